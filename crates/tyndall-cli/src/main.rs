@@ -1,0 +1,2 @@
+//! The tyndall command line.
+fn main() {}

@@ -1,0 +1,60 @@
+//! Axis-aligned bounding boxes.
+
+use glam::Vec3;
+
+/// The box `min ≤ p ≤ max`; empty when `min > max`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Least corner [length].
+    pub min: Vec3,
+    /// Greatest corner [length].
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The box that holds nothing.
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The smallest box around `points`.
+    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::with)
+    }
+
+    /// This box grown to hold `p`.
+    #[must_use]
+    pub fn with(self, p: Vec3) -> Self {
+        Self { min: self.min.min(p), max: self.max.max(p) }
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Whether nothing is inside.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    /// Edge lengths [length].
+    pub fn extent(&self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// The middle [length].
+    pub fn centre(&self) -> Vec3 {
+        self.min * 0.5 + self.max * 0.5
+    }
+
+    /// The eight corners [length].
+    pub fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|i| {
+            Vec3::new(
+                if i & 1 == 0 { self.min.x } else { self.max.x },
+                if i & 2 == 0 { self.min.y } else { self.max.y },
+                if i & 4 == 0 { self.min.z } else { self.max.z },
+            )
+        })
+    }
+}
