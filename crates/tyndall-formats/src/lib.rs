@@ -1,1 +1,3 @@
 //! tyndall-formats
+
+pub mod film;
