@@ -101,7 +101,7 @@ fn decode(bytes: &[u8]) -> Result<Image, String> {
 fn check_sizes(bytes: &[u8]) -> Result<(), String> {
     let meta = ::exr::meta::MetaData::read_from_buffered(bytes, false).map_err(|e| e.to_string())?;
     for header in &meta.headers {
-        let pixels = header.layer_size.0.checked_mul(header.layer_size.1).unwrap_or(usize::MAX);
+        let pixels = header.layer_size.0.saturating_mul(header.layer_size.1);
         // No compression that OpenEXR knows packs more than a thousand pixels into a byte.
         if pixels > MOST_PIXELS || pixels / 1024 > bytes.len() {
             return Err(format!("its header promises {pixels} pixels, more than the file can hold"));

@@ -17,7 +17,7 @@ pub mod tone;
 
 use std::path::PathBuf;
 
-use tyndall::film::{Crop, Film};
+use tyndall::film::{Crop, Film, Pixel};
 
 pub use metadata::Metadata;
 pub use tone::{Curve, Tone};
@@ -48,8 +48,8 @@ impl Image {
             width: film.width,
             height: film.height,
             crop: film.crop,
-            mean: film.pixels.iter().map(|p| p.mean()).collect(),
-            standard_error: Some(film.pixels.iter().map(|p| p.standard_error()).collect()),
+            mean: film.pixels.iter().map(Pixel::mean).collect(),
+            standard_error: Some(film.pixels.iter().map(Pixel::standard_error).collect()),
             rounding: ROUNDING_F32,
             metadata: Some(metadata),
         }
