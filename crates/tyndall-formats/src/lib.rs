@@ -1,1 +1,4 @@
 //! tyndall-formats
+
+pub mod image;
+pub mod mesh;
