@@ -9,6 +9,8 @@
 
 pub mod desc;
 pub mod error;
+pub mod image;
+pub mod mesh;
 pub mod mitsuba;
 pub mod pbrt;
 pub mod source;
