@@ -1,2 +1,34 @@
-//! Repository chores.
-fn main() {}
+//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `bench`, `full`.
+#![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
+
+mod ci;
+mod shell;
+mod tidy;
+
+use clap::{Parser, Subcommand};
+
+/// The chores of this repository.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Debug, Subcommand)]
+enum Chore {
+    /// Everything that must hold for every commit: format, lints, docs, tests, tidy, smoke test
+    Ci,
+    /// The rules of STYLE.md that a program can check
+    Tidy,
+    /// All that is known to be worth checking: ci, then the slow tests
+    Full,
+}
+
+fn main() -> anyhow::Result<()> {
+    match Cli::parse().chore {
+        Chore::Ci => ci::run(),
+        Chore::Tidy => tidy::run(),
+        Chore::Full => ci::run().and_then(|()| ci::run_slow_tests()),
+    }
+}

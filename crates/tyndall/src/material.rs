@@ -53,6 +53,8 @@ pub enum Metal {
     },
     /// By its reflectance at normal incidence, 0 to 1 [1].
     Reflectance(Spectrum),
+    /// All light, at every angle.
+    Mirror,
 }
 
 /// A relative index of refraction.
@@ -77,6 +79,8 @@ impl Material {
                 let bsdf = match metal {
                     Metal::Index { eta, k } => Bsdf::conductor(eta.eval(wavelengths), k.eval(wavelengths), *x, *y),
                     Metal::Reflectance(r) => Bsdf::conductor_of_reflectance(r.eval(wavelengths), *x, *y),
+                    // |1 − ik| = |1 + ik|: a purely imaginary index reflects all.
+                    Metal::Mirror => Bsdf::conductor(Lanes::ZERO, Lanes::ONE, *x, *y),
                 };
                 bsdf.tinted(tint.eval(wavelengths), Lanes::ONE).on(*sides)
             }

@@ -200,5 +200,5 @@ fn sample_pixel(
     let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
     tally.paths += 1;
     let radiance = integrator.li(scene, ray, wavelengths, u_hero, &mut sampler, tally);
-    film_rgb(radiance, &wavelengths)
+    film_rgb(radiance, &wavelengths).map(|v| v * scene.camera.exposure)
 }

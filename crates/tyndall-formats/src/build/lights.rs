@@ -54,7 +54,7 @@ impl Builder<'_> {
                 Some(Light::Constant(ConstantEnvironment { radiance, luminance }))
             }
             LightKind::Environment { path, scale, mapping } => {
-                let picture = match image::read(&path.value) {
+                let picture = match image::read_image(&path.value) {
                     Ok(picture) => picture,
                     Err(e) => return self.fail(SceneError::at(path.span, e.to_string())),
                 };

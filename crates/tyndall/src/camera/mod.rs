@@ -11,15 +11,16 @@ use crate::{
 pub struct Camera {
     /// Camera space to world.
     pub to_world: Transform,
-    /// Half the width and height of the image plane at distance 1 [dimensionless]: `tan(fov/2)` on the axis that the
-    /// field of view is given for.
-    pub half_extent: [f32; 2],
+    /// What the image sees of the plane z = 1: left, right, bottom, top [1].
+    pub window: [f32; 4],
     /// Image width [pixels].
     pub width: u32,
     /// Image height [pixels].
     pub height: u32,
     /// Reconstruction filter.
     pub filter: Filter,
+    /// A factor on every value of the film [1].
+    pub exposure: f32,
     /// The medium around the camera, when the scene says so.
     pub medium: Option<MediumId>,
 }
@@ -36,8 +37,10 @@ impl Camera {
     /// The ray through a place on the raster [pixels from the upper left corner].
     #[inline]
     pub fn ray_through(&self, x: f32, y: f32) -> Ray {
-        let ndc = [2.0 * x / self.width as f32 - 1.0, 1.0 - 2.0 * y / self.height as f32];
-        let dir = Vec3::new(ndc[0] * self.half_extent[0], ndc[1] * self.half_extent[1], 1.0);
+        let [left, right, bottom, top] = self.window;
+        let across = x / self.width as f32;
+        let down = y / self.height as f32;
+        let dir = Vec3::new(left + (right - left) * across, top + (bottom - top) * down, 1.0);
         Ray::new(self.to_world.point(Vec3::ZERO), self.to_world.vector(dir).normalize())
     }
 }
