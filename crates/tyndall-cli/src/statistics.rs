@@ -85,10 +85,8 @@ pub(crate) fn measures(a: &Image, b: &Image) -> Measures {
         }
     }
     let mse = squares / n;
-    let noise = [a, b].iter().filter_map(|image| image.standard_error.as_deref()).map(|se| {
-        channels(se).map(|e| e * e).sum::<f64>() / n
-    });
-    let has_noise = a.standard_error.is_some() || b.standard_error.is_some();
+    let noise = |image: &Image| image.standard_error.as_deref().map(|se| channels(se).map(|e| e * e).sum::<f64>() / n);
+    let noises = [a, b].map(noise);
     Measures {
         mse,
         mae: absolute / n,
@@ -96,7 +94,7 @@ pub(crate) fn measures(a: &Image, b: &Image) -> Measures {
         psnr: 10.0 * (peak * peak / mse).log10(),
         max_difference: largest,
         max_difference_pixel: pixel_at(a, place),
-        mse_from_noise: has_noise.then(|| noise.sum()),
+        mse_from_noise: noises.iter().any(Option::is_some).then(|| noises.iter().flatten().sum()),
     }
 }
 
@@ -238,31 +236,55 @@ mod tests {
         Image::of(&film, Metadata::default())
     }
 
-    /// Under agreement p is uniform: the smallest of 40 is above 10⁻⁴ with probability 0.996, a mean of p between 0.3
-    /// and 0.75 has more than 4 standard deviations (0.289/√40 = 0.046) of room on either side. (Standard errors that
-    /// are themselves estimated from 64 exponential samples fatten the tails a little.)
+    /// Normal noise of known size: every z is exactly standard normal and independent, so both p-values are uniform.
+    /// Kolmogorov–Smirnov: the largest distance between the empirical and the uniform distribution of 400 values stays
+    /// below 1.63/√400 with probability 0.99.
     #[test]
-    fn two_renders_of_one_image_have_uniform_p_values() {
+    fn p_values_are_uniform_when_two_images_differ_by_noise_alone() {
+        let flat = render(1.0, 0);
+        let noise = |seed: u64| {
+            let mut image = flat.clone();
+            let mut rng = Rng::for_sample((0, 0), 0, seed);
+            for (mean, se) in image.mean.iter_mut().zip(image.standard_error.as_mut().unwrap()) {
+                *mean = std::array::from_fn(|_| {
+                    let (radius, turn) = ((-2.0 * rng.next_positive().ln()).sqrt(), rng.next_1d());
+                    1.0 + 0.1 * radius * (std::f32::consts::TAU * turn).cos()
+                });
+                *se = [0.1; 3];
+            }
+            image
+        };
         let tests: Vec<Test> =
-            (0..40).map(|i| z_test(&render(1.0, 2 * i), &render(1.0, 2 * i + 1), 8).unwrap()).collect();
-        let mean_p = tests.iter().map(|t| t.p).sum::<f64>() / 40.0;
-        assert!((0.3..0.75).contains(&mean_p), "mean p {mean_p}");
-        assert!(tests.iter().all(|t| t.p > 1e-4), "{tests:?}");
+            (0..400).map(|i| z_test(&noise(1000 + 2 * i), &noise(1001 + 2 * i), 8).unwrap()).collect();
         assert_eq!(tests[0].tests, 8 * 6 * 3);
-        let spread = tests.iter().flat_map(|t| t.chi_square_per_degree).sum::<f64>() / 120.0;
+        for p in [|t: &Test| t.p_max_z, |t: &Test| t.p_chi_square] {
+            let mut values: Vec<f64> = tests.iter().map(p).collect();
+            values.sort_by(f64::total_cmp);
+            let distance = values.iter().enumerate().map(|(i, p)| (p - (i as f64 + 0.5) / 400.0).abs());
+            let distance = distance.fold(0.0, f64::max);
+            assert!(distance < 1.63 / 20.0, "Kolmogorov–Smirnov distance {distance}");
+        }
+    }
+
+    /// Standard errors that are themselves estimated, from 64 samples of a skewed distribution.
+    #[test]
+    fn two_renders_of_one_image_agree() {
+        let tests: Vec<Test> =
+            (0..20).map(|i| z_test(&render(1.0, 2 * i), &render(1.0, 2 * i + 1), 8).unwrap()).collect();
+        assert!(tests.iter().all(|t| t.p > 1e-4), "{tests:?}");
+        let spread = tests.iter().flat_map(|t| t.chi_square_per_degree).sum::<f64>() / 60.0;
         assert!((spread - 1.0).abs() < 0.05, "χ² a degree of freedom {spread}");
     }
 
-    /// 3072 pixels of 64 samples: the mean is known to 1/√196608 = 0.23 %; a shift of 1 % is 3.1 standard deviations
-    /// of the difference in each channel and far too small to see in one tile (z = 0.45), but over 48 tiles χ² grows by
-    /// 48 · 0.2 = 9.8 = one standard deviation. 5 % adds 25 of them.
+    /// A tile has 64 pixels of 64 samples: the difference of two means is known to √2/64 = 2.2 %. A shift of 5 % is
+    /// z = 2.3, nothing to see in one tile of 144; but χ² of 48 tiles grows by 48 · 2.3² = 250, 25 standard deviations.
+    /// One tile over the whole image knows the difference to 0.32 %: there 2 % is z = 6.
     #[test]
     fn a_small_shift_is_found_by_chi_square_and_a_local_one_by_the_largest_z() {
         let a = render(1.0, 1);
         let shifted = z_test(&a, &render(1.05, 2), 8).unwrap();
         assert!(shifted.p_chi_square < 1e-6, "{shifted:?}");
 
-        // Larger tiles pool more pixels: with one tile of the whole image 1 % is seen at once.
         let whole = |mean| z_test(&render(mean, 3), &render(1.0, 4), 64).unwrap();
         assert!(whole(1.02).p < 1e-4);
 

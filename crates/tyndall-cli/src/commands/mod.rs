@@ -1,6 +1,3 @@
 //! What the program can do, a page each.
 
 pub(crate) mod compare;
-pub(crate) mod info;
-pub(crate) mod lecture;
-pub(crate) mod render;
