@@ -78,6 +78,10 @@ impl GeometryBuilder {
     }
 
     /// Adds a mesh. `reverse_orientation` turns the normals round.
+    ///
+    /// # Errors
+    ///
+    /// If an index is out of range, an attribute incomplete, or a coordinate not finite.
     pub fn add_mesh(
         &mut self,
         mesh: Mesh,
@@ -91,6 +95,10 @@ impl GeometryBuilder {
     }
 
     /// Adds a sphere.
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive, or a coordinate not finite.
     pub fn add_sphere(
         &mut self,
         sphere: Sphere,
@@ -104,6 +112,10 @@ impl GeometryBuilder {
     }
 
     /// Adds a disk.
+    ///
+    /// # Errors
+    ///
+    /// If the radius is not positive, or a coordinate not finite.
     pub fn add_disk(
         &mut self,
         disk: Disk,
@@ -117,6 +129,10 @@ impl GeometryBuilder {
     }
 
     /// Adds a bilinear patch; as a mesh of two triangles if it is flat.
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite.
     pub fn add_patch(
         &mut self,
         patch: Patch,
@@ -142,6 +158,10 @@ impl GeometryBuilder {
     }
 
     /// Places a group in the world. Instances are numbered in this order ([`super::Hit::instance`]).
+    ///
+    /// # Errors
+    ///
+    /// If there are too many.
     pub fn add_instance(&mut self, group: GroupId, transform: &Transform) -> Result<u32, ShapeError> {
         let index = self.instances.len() as u32;
         if index == NONE {
@@ -165,6 +185,10 @@ impl GeometryBuilder {
     }
 
     /// Builds the trees.
+    ///
+    /// # Errors
+    ///
+    /// If there are too many shapes for one tree.
     pub fn build(self) -> Result<Geometry, ShapeError> {
         let groups = self.groups.iter().map(|group| self.tree(group, Vec::new())).collect::<Result<Vec<_>, _>>()?;
         let instances = (0..self.instances.len()).flat_map(|i| self.instance_entries(i as u32, &groups)).collect();

@@ -33,7 +33,7 @@ impl Geometry {
             Primitive::Instance(index) => self.instance_clearance(simd, index, p, cap),
             Primitive::Shape { object, instance } if instance != NONE => {
                 let placement = &self.instances[instance as usize].placement;
-                let local = placement.to_local(p.as_dvec3());
+                let local = placement.local_point(p.as_dvec3());
                 self.shapes[object as usize].clearance(local) * placement.least_stretch() - placement.slack(local)
             }
             _ => self.primitive_clearance(primitive, p.as_dvec3()),
@@ -45,7 +45,7 @@ impl Geometry {
         let instance = &self.instances[index as usize];
         let (placement, tree) = (&instance.placement, &self.groups[instance.group as usize]);
         let stretch = placement.least_stretch();
-        let local = placement.to_local(p.as_dvec3());
+        let local = placement.local_point(p.as_dvec3());
         let found = simd.vectorize(
             #[inline(always)]
             || search(simd, tree, local, cap / stretch, |primitive, _| self.primitive_clearance(primitive, local)),
@@ -65,7 +65,7 @@ impl Geometry {
 impl Placement {
     /// What the rounding of the map to local space may add to a distance.
     fn slack(&self, local: DVec3) -> f64 {
-        let map = self.to_world();
+        let map = self.map();
         let size = (map.matrix3.x_axis.abs() + map.matrix3.y_axis.abs() + map.matrix3.z_axis.abs()).max_element();
         SLACK * (size * local.abs().max_element() + map.translation.abs().max_element())
     }
@@ -87,7 +87,7 @@ impl Sphere {
         match &self.placement {
             None => to_sphere(self.centre, self.radius, p),
             Some(placement) => {
-                let local = placement.to_local(p);
+                let local = placement.local_point(p);
                 to_sphere(self.centre, self.radius, local) * placement.least_stretch() - placement.slack(local)
             }
         }

@@ -28,7 +28,8 @@ impl Placement {
         Self { to_world, to_local: as_double(&to_world).inverse() }
     }
 
-    pub(super) fn to_world(&self) -> DAffine3 {
+    /// Local to world.
+    pub(super) fn map(&self) -> DAffine3 {
         as_double(&self.to_world)
     }
 
@@ -36,14 +37,14 @@ impl Placement {
     #[inline(always)]
     pub(super) fn ray_to_local(&self, ray: &Ray) -> Ray {
         Ray::new(
-            self.to_local(ray.origin.as_dvec3()).as_vec3(),
+            self.local_point(ray.origin.as_dvec3()).as_vec3(),
             self.to_local.transform_vector3(ray.dir.as_dvec3()).as_vec3(),
         )
     }
 
     /// A world point in local space.
     #[inline(always)]
-    pub(super) fn to_local(&self, p: DVec3) -> DVec3 {
+    pub(super) fn local_point(&self, p: DVec3) -> DVec3 {
         self.to_local.transform_point3(p)
     }
 
@@ -58,7 +59,7 @@ impl Placement {
 
     /// The factor of a similarity (rotation, mirroring, uniform scale), exact to rounding.
     pub(super) fn uniform_scale(&self) -> Option<f64> {
-        let m = self.to_world().matrix3;
+        let m = self.map().matrix3;
         let gram = m.transpose() * m;
         let square = gram.x_axis.x;
         let off = gram - DMat3::from_diagonal(DVec3::splat(square));
@@ -69,7 +70,7 @@ impl Placement {
 
     /// The box around a mapped box, rounded outward.
     pub(super) fn bounds(&self, b: &Bounds) -> Bounds {
-        let map = self.to_world();
+        let map = self.map();
         let corners = b.corners().map(|c| map.transform_point3(c.as_dvec3()));
         let min = corners.iter().fold(DVec3::INFINITY, |a, &c| a.min(c));
         let max = corners.iter().fold(DVec3::NEG_INFINITY, |a, &c| a.max(c));
@@ -78,7 +79,7 @@ impl Placement {
 
     /// Maps a surface point.
     pub(super) fn place(&self, point: &Point) -> Point {
-        let map = self.to_world();
+        let map = self.map();
         let normal = |n: DVec3| self.to_local.matrix3.transpose() * n;
         // A ray that leaves this point is rounded in local space: by u in each coordinate of its origin.
         let rounding = f64::from(f32::EPSILON) * point.p.abs().max_element();

@@ -7,7 +7,7 @@ use crate::math::{Transform, Vec2, Vec3};
 
 /// Triangles over shared vertices.
 ///
-/// Seen from outside, the vertices of a triangle run anticlockwise (or clockwise if the builder reverses the object).
+/// Seen from outside, the vertices of a triangle run anticlockwise (or clockwise if `reversed`).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
     /// Vertices [length].
@@ -18,6 +18,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// One pair a vertex, or none at all: then every triangle has (0,0), (1,0), (1,1).
     pub uvs: Vec<Vec2>,
+    /// Whether the geometric normals are turned round. The builder sets it anew.
+    pub reversed: bool,
 }
 
 impl Mesh {
@@ -43,7 +45,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// The mesh in world space. A mirroring turns the winding, and `reversed` turns it once more.
+    /// The mesh in world space. A mirroring turns the winding round, and `reversed` turns it once more.
     pub(super) fn placed(mut self, transform: &Transform, reversed: bool) -> Self {
         if *transform != Transform::IDENTITY {
             let to_world = transform.matrix.as_dmat4();
@@ -54,11 +56,7 @@ impl Mesh {
                 *n = transform.normal(*n);
             }
         }
-        if reversed != transform.mirrors() {
-            for t in &mut self.indices {
-                t.swap(1, 2);
-            }
-        }
+        self.reversed = reversed != transform.mirrors();
         self
     }
 
@@ -68,7 +66,7 @@ impl Mesh {
         let [p0, p1, p2] = corners.map(|i| self.positions[i].as_dvec3());
         let (e1, e2) = (p1 - p0, p2 - p0);
         let (b1, b2) = (f64::from(weights.x), f64::from(weights.y));
-        let ng = e1.cross(e2);
+        let ng = if self.reversed { e2.cross(e1) } else { e1.cross(e2) };
         let ns = if self.normals.is_empty() {
             ng
         } else {

@@ -53,16 +53,13 @@ impl Patch {
         if !convex || height > 4.0 * f64::from(f32::EPSILON * magnitude) {
             return None;
         }
-        let mut mesh = Mesh {
+        Some(Mesh {
             positions: vec![self.corners[0], self.corners[1], self.corners[3], self.corners[2]],
             indices: vec![[0, 1, 2], [0, 2, 3]],
             normals: Vec::new(),
             uvs: vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y],
-        };
-        if self.reversed {
-            mesh.indices.iter_mut().for_each(|t| t.swap(1, 2));
-        }
-        Some(mesh)
+            reversed: self.reversed,
+        })
     }
 
     /// The hull of the corners holds the patch.

@@ -53,7 +53,7 @@ impl Sphere {
             let placement = Placement::new(transform);
             match self.moved(&placement) {
                 Some((centre, radius)) => {
-                    self.axes = placement.to_world().matrix3.inverse() * f64::from(radius / self.radius);
+                    self.axes = placement.map().matrix3.inverse() * f64::from(radius / self.radius);
                     (self.centre, self.radius) = (centre, radius);
                 }
                 None => self.placement = Some(placement),
@@ -65,7 +65,7 @@ impl Sphere {
     /// Centre and radius after a similarity.
     pub(super) fn moved(&self, placement: &Placement) -> Option<(Vec3, f32)> {
         let scale = placement.uniform_scale().filter(|_| self.placement.is_none())?;
-        let centre = placement.to_world().transform_point3(self.centre.as_dvec3()).as_vec3();
+        let centre = placement.map().transform_point3(self.centre.as_dvec3()).as_vec3();
         let radius = (f64::from(self.radius) * scale) as f32;
         (centre.is_finite() && radius.is_normal()).then_some((centre, radius))
     }
@@ -75,7 +75,7 @@ impl Sphere {
         match &self.placement {
             None => outward(centre - radius, centre + radius),
             Some(placement) => {
-                let map = placement.to_world();
+                let map = placement.map();
                 let rows = map.matrix3.transpose();
                 let half = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()) * radius;
                 let middle = map.transform_point3(centre);
