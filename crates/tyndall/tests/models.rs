@@ -1,21 +1,18 @@
 //! Every phase function and every BSDF in one table, and what must be true of all of them: the sampler draws from the
 //! density, weights are values over densities, exchange of the directions, conservation of energy, no NaN.
 
+use std::f64::consts::TAU;
+
+use testkit::quadrature::{adaptive_rectangle, direction, gauss_legendre};
+use testkit::{Family, Grid, Outcome, Stream, chi_square, close, z_test};
 use tyndall::bsdf::microfacet::{TrowbridgeReitz, roughness_to_alpha};
-use tyndall::bsdf::{Bsdf, ScatterKind, Sides};
+use tyndall::bsdf::{Bsdf, BsdfSample, ScatterKind, Sides};
 use tyndall::math::{Vec2, Vec3};
 use tyndall::phase::{Isotropic, Phase, Rayleigh, deflect};
 use tyndall::spectrum::Lanes;
 
 #[path = "models/fresnel.rs"]
 mod fresnel;
-#[path = "models/sums.rs"]
-mod sums;
-
-use sums::{Uniforms, assert_chi_square, assert_mean, integrate, integrate_line};
-
-const PI: f64 = std::f64::consts::PI;
-
 /// Every model with its parameters in common and extreme settings.
 fn bsdfs() -> Vec<(&'static str, Bsdf)> {
     let ochre = Lanes::rgb(0.8, 0.5, 0.2);
@@ -74,57 +71,64 @@ fn phases() -> Vec<(String, Phase)> {
     all
 }
 
-/// Bins of the sphere, equal in solid angle: the horizon is an edge.
-const RINGS: usize = 40;
-const SECTORS: usize = 64;
+/// The sphere as cos θ × φ, finer than testkit's own for the sharper lobes; the horizon is an edge.
+const SPHERE: Grid = Grid { nx: 40, ny: 64, ..Grid::SPHERE };
 
-fn bin_of(w: Vec3) -> usize {
-    let ring = ((f64::from(w.z) + 1.0) * 0.5 * RINGS as f64) as usize;
-    let turn = (f64::from(w.y).atan2(f64::from(w.x)) / (2.0 * PI)).rem_euclid(1.0);
-    ring.min(RINGS - 1) * SECTORS + ((turn * SECTORS as f64) as usize).min(SECTORS - 1)
+fn cell_of(w: Vec3) -> usize {
+    let index = |at: f64, n: usize| ((at * n as f64) as usize).min(n - 1);
+    let row = index((f64::from(w.z) + 1.0) * 0.5, SPHERE.nx);
+    row * SPHERE.ny + index(f64::from(w.y).atan2(f64::from(w.x)) / TAU + 0.5, SPHERE.ny)
 }
 
-/// `∫ f dω` over each bin.
-fn bin_integrals(f: impl Fn(Vec3) -> f64) -> Vec<f64> {
-    let on_sphere = |z: f64, phi: f64| {
-        let sin = ((1.0 - z) * (1.0 + z)).sqrt();
-        f(Vec3::new((sin * phi.cos()) as f32, (sin * phi.sin()) as f32, z as f32))
-    };
-    let edge = |i: usize, n: usize, from: f64, to: f64| from + (to - from) * i as f64 / n as f64;
-    let mut bins = Vec::with_capacity(RINGS * SECTORS);
-    for ring in 0..RINGS {
-        for sector in 0..SECTORS {
-            let z = [edge(ring, RINGS, -1.0, 1.0), edge(ring + 1, RINGS, -1.0, 1.0)];
-            let phi = [edge(sector, SECTORS, 0.0, 2.0 * PI), edge(sector + 1, SECTORS, 0.0, 2.0 * PI)];
-            bins.push(integrate(&on_sphere, z, phi, 1e-6));
-        }
-    }
-    bins
+/// `∫ f dω` over each cell of [`SPHERE`].
+fn cell_integrals(f: impl Fn(Vec3) -> f32) -> Vec<f64> {
+    SPHERE.integrate(|p| f64::from(f(Vec3::from_array(direction(p).map(|x| x as f32)))))
 }
 
-/// The histogram of the directions drawn must be that of the density. The bin of the samples that failed expects what
+fn uniform_direction(stream: &mut Stream) -> Vec3 {
+    let at = [2.0 * stream.next_f64() - 1.0, TAU * stream.next_f64()];
+    Vec3::from_array(direction(at).map(|x| x as f32))
+}
+
+fn sample(bsdf: &Bsdf, wo: Vec3, stream: &mut Stream) -> Option<BsdfSample> {
+    bsdf.sample(wo, stream.next_f32(), Vec2::new(stream.next_f32(), stream.next_f32()))
+}
+
+/// Every model with a density, from every direction.
+fn rough_cases() -> impl Iterator<Item = (String, Bsdf, Vec3)> {
+    bsdfs()
+        .into_iter()
+        .filter(|(_, bsdf)| !bsdf.is_specular())
+        .flat_map(|(name, bsdf)| directions().into_iter().map(move |wo| (format!("{name} from {wo}"), bsdf, wo)))
+}
+
+/// The histogram of the directions drawn must be that of the density. The cell of the samples that failed expects what
 /// the density leaves to 1, so a density that is too great or too small everywhere is caught as well.
 #[test]
 fn every_bsdf_sampler_draws_from_its_density() {
-    let cases: Vec<_> = bsdfs().into_iter().filter(|(_, bsdf)| !bsdf.is_specular()).collect();
-    let family = cases.len() * directions().len();
-    for (name, bsdf) in cases {
-        for wo in directions() {
-            let mut expected = bin_integrals(|wi| f64::from(bsdf.pdf(wo, wi)));
-            let total: f64 = expected.iter().sum();
-            assert!(total < 1.0 + 1e-4, "{name} from {wo}: the density integrates to {total}");
-            expected.push((1.0 - total).max(0.0));
-            let mut observed = vec![0u32; expected.len()];
-            let mut uniforms = Uniforms::new(1);
-            for _ in 0..200_000 {
-                let bin = bsdf
-                    .sample(wo, uniforms.next_1d(), uniforms.next_2d())
-                    .map_or(expected.len() - 1, |sample| bin_of(sample.wi));
-                observed[bin] += 1;
-            }
-            assert_chi_square(&format!("{name} from {wo}"), &observed, &expected, family);
+    let mut family = Family::new("BSDF samplers", 0.01);
+    for (name, bsdf, wo) in rough_cases() {
+        let mut expected = cell_integrals(|wi| bsdf.pdf(wo, wi));
+        let total: f64 = expected.iter().sum();
+        assert!(total < 1.0 + 1e-4, "{name}: the density integrates to {total}");
+        expected.push((1.0 - total).max(0.0));
+        let (mut observed, mut stream) = (vec![0u64; expected.len()], Stream::new(1));
+        for _ in 0..200_000 {
+            let drawn = sample(&bsdf, wo, &mut stream);
+            observed[drawn.map_or(expected.len() - 1, |s| cell_of(s.wi))] += 1;
         }
+        family.check(&name, verdict(&observed, &expected));
     }
+    family.finish();
+}
+
+/// χ²; but where the side is black, every sample must fail.
+fn verdict(observed: &[u64], expected: &[f64]) -> Outcome {
+    if expected.last() == Some(&1.0) {
+        let failed = *observed.last().unwrap_or(&0) as f64;
+        return close(failed, observed.iter().sum::<u64>() as f64, 0.0);
+    }
+    chi_square(observed, expected)
 }
 
 /// Diffuse reflection cannot fail where the side answers.
@@ -132,7 +136,7 @@ fn every_bsdf_sampler_draws_from_its_density() {
 fn the_density_of_diffuse_reflection_integrates_to_one() {
     let (_, bsdf) = bsdfs()[0];
     for wo in directions() {
-        let total: f64 = bin_integrals(|wi| f64::from(bsdf.pdf(wo, wi))).iter().sum();
+        let total: f64 = cell_integrals(|wi| bsdf.pdf(wo, wi)).iter().sum();
         assert!((total - 1.0).abs() < 1e-6, "{total}");
     }
 }
@@ -142,14 +146,14 @@ fn the_density_of_diffuse_reflection_integrates_to_one() {
 #[test]
 fn microfacets_and_the_visible_ones_among_them_integrate_to_one() {
     let hemisphere = |f: &dyn Fn(Vec3) -> f32| -> f64 {
-        let g = |t: f64, phi: f64| {
+        let g = |[t, phi]: [f64; 2]| {
             let t3 = t * t * t;
             let sin = (t3 * (2.0 - t3)).sqrt();
             let m = Vec3::new((sin * phi.cos()) as f32, (sin * phi.sin()) as f32, (1.0 - t3) as f32);
             f64::from(f(m)) * 3.0 * t * t
         };
         let cell = |i: usize, n: usize, to: f64| [to * i as f64 / n as f64, to * (i + 1) as f64 / n as f64];
-        (0..160 * 64).map(|i| integrate(&g, cell(i / 64, 160, 1.0), cell(i % 64, 64, 2.0 * PI), 1e-8)).sum()
+        (0..160 * 64).map(|i| adaptive_rectangle(cell(i / 64, 160, 1.0), cell(i % 64, 64, TAU), 1e-8, 6, &g)).sum()
     };
     for (alpha_x, alpha_y) in [(0.05, 0.05), (0.3, 0.1), (1.0, 1.0)] {
         let d = TrowbridgeReitz { alpha_x, alpha_y };
@@ -166,10 +170,10 @@ fn microfacets_and_the_visible_ones_among_them_integrate_to_one() {
 #[test]
 fn every_weight_is_the_value_over_the_density() {
     for (name, bsdf) in bsdfs() {
-        let mut uniforms = Uniforms::new(2);
+        let mut stream = Stream::new(2);
         for wo in directions() {
             for _ in 0..20_000 {
-                let Some(s) = bsdf.sample(wo, uniforms.next_1d(), uniforms.next_2d()) else { continue };
+                let Some(s) = sample(&bsdf, wo, &mut stream) else { continue };
                 let (value, pdf) = (bsdf.eval(wo, s.wi), bsdf.pdf(wo, s.wi));
                 assert!((s.wi.length() - 1.0).abs() < 2e-6, "{name} from {wo}: {s:?}");
                 assert_eq!(s.kind == ScatterKind::Reflection, wo.z * s.wi.z > 0.0, "{name} from {wo}: {s:?}");
@@ -197,9 +201,9 @@ fn exchanging_the_directions_changes_nothing_but_the_squared_index() {
             _ => 1.0,
         };
         let index = |w: Vec3| if w.z > 0.0 { 1.0 } else { eta };
-        let mut uniforms = Uniforms::new(3);
+        let mut stream = Stream::new(3);
         for _ in 0..20_000 {
-            let (a, b) = (uniforms.direction(), uniforms.direction());
+            let (a, b) = (uniform_direction(&mut stream), uniform_direction(&mut stream));
             let there = bsdf.eval(a, b) / (b.z.abs() * index(a) * index(a));
             let back = bsdf.eval(b, a) / (a.z.abs() * index(b) * index(b));
             let m = (a * index(a) + b * index(b)).normalize();
@@ -220,7 +224,7 @@ fn a_smooth_dielectric_loses_nothing() {
             for side in [1.0, -1.0] {
                 let cos = i as f32 / 1000.0;
                 let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, side * cos);
-                let power = |s: tyndall::bsdf::BsdfSample| f64::from(s.pdf * s.weight.lane(0) * s.eta * s.eta);
+                let power = |s: BsdfSample| f64::from(s.pdf * s.weight.lane(0) * s.eta * s.eta);
                 let first = bsdf.sample(wo, 0.0, Vec2::ZERO).unwrap();
                 let last = bsdf.sample(wo, 1.0 - f32::EPSILON, Vec2::ZERO).unwrap();
                 let total = if first.kind == last.kind { power(first) } else { power(first) + power(last) };
@@ -234,10 +238,10 @@ fn a_smooth_dielectric_loses_nothing() {
 #[test]
 fn no_lossless_model_creates_energy() {
     for (name, bsdf) in bsdfs() {
-        let mut uniforms = Uniforms::new(4);
+        let mut stream = Stream::new(4);
         for _ in 0..50_000 {
-            let wo = uniforms.direction();
-            if let Some(s) = bsdf.sample(wo, uniforms.next_1d(), uniforms.next_2d()) {
+            let wo = uniform_direction(&mut stream);
+            if let Some(s) = sample(&bsdf, wo, &mut stream) {
                 let power = s.weight.max_lane() * s.eta * s.eta;
                 let bound = if name.ends_with("tinted") { 2.0 } else { 1.0 };
                 assert!(power <= bound + 1e-5, "{name} from {wo}: {s:?}");
@@ -249,29 +253,24 @@ fn no_lossless_model_creates_energy() {
 /// What `sample` returns on average is the integral of `eval`: `E[weight] = ∫ f cos θ dω`.
 #[test]
 fn the_mean_weight_is_the_integral_of_the_value() {
-    let cases: Vec<_> = bsdfs().into_iter().filter(|(_, bsdf)| !bsdf.is_specular()).collect();
-    let family = cases.len() * directions().len();
-    for (name, bsdf) in cases {
-        for wo in directions() {
-            let exact: f64 = bin_integrals(|wi| f64::from(bsdf.eval(wo, wi).lane(0))).iter().sum();
-            let mut uniforms = Uniforms::new(5);
-            let weights = (0..100_000).map(|_| {
-                let sample = bsdf.sample(wo, uniforms.next_1d(), uniforms.next_2d());
-                sample.map_or(0.0, |s| f64::from(s.weight.lane(0)))
-            });
-            assert_mean(&format!("{name} from {wo}"), weights, exact, family);
-        }
+    let mut family = Family::new("BSDF weights", 0.01);
+    for (name, bsdf, wo) in rough_cases() {
+        let exact: f64 = cell_integrals(|wi| bsdf.eval(wo, wi).lane(0)).iter().sum();
+        let mut stream = Stream::new(5);
+        let mut weight = || sample(&bsdf, wo, &mut stream).map_or(0.0, |s| f64::from(s.weight.lane(0)));
+        family.check(&name, z_test((0..100_000).map(|_| weight()), exact));
     }
+    family.finish();
 }
 
 /// A nearly smooth surface at normal incidence loses almost nothing to masking: as α → 0 the weight tends to the smooth
 /// one, with a loss of order α².
 #[test]
 fn a_rough_interface_tends_to_the_smooth_one() {
-    let mut uniforms = Uniforms::new(6);
+    let mut stream = Stream::new(6);
     for _ in 0..10_000 {
-        let sample = Bsdf::dielectric(1.5, 0.01, 0.01).sample(Vec3::Z, uniforms.next_1d(), uniforms.next_2d());
-        let power = sample.map_or(0.0, |s| s.weight.lane(0) * s.eta * s.eta);
+        let drawn = sample(&Bsdf::dielectric(1.5, 0.01, 0.01), Vec3::Z, &mut stream);
+        let power = drawn.map_or(0.0, |s| s.weight.lane(0) * s.eta * s.eta);
         assert!(power > 0.9, "{power}");
     }
     assert!(matches!(Bsdf::dielectric(1.5, 9e-4, 9e-4), Bsdf::Dielectric(_)));
@@ -311,9 +310,9 @@ fn nothing_is_infinite_or_negative_at_grazing_angles_or_for_degenerate_direction
 /// Without a step of the index, and without a surface, light goes straight on, bit for bit.
 #[test]
 fn matched_indices_are_invisible() {
-    let mut uniforms = Uniforms::new(7);
+    let mut stream = Stream::new(7);
     for _ in 0..10_000 {
-        let (wo, u) = (uniforms.direction(), uniforms.next_1d());
+        let (wo, u) = (uniform_direction(&mut stream), stream.next_f32());
         for bsdf in [Bsdf::Null, Bsdf::dielectric(1.0, 0.0, 0.0), Bsdf::dielectric(1.0, 0.5, 0.5)] {
             let s = bsdf.sample(wo, u, Vec2::splat(0.3)).unwrap();
             assert_eq!((s.wi, s.weight, s.eta, s.pdf), (-wo, Lanes::ONE, 1.0, 1.0));
@@ -334,7 +333,8 @@ fn a_one_sided_model_is_black_inside() {
 /// `∫ p dω = 1` and `∫ p cos θ dω = g`, and the histogram of the cosines is that of the density.
 #[test]
 fn every_phase_function_is_normalised_and_drawn_from_its_density() {
-    const BINS: usize = 100;
+    const CELLS: usize = 50;
+    let mut family = Family::new("phase functions", 0.01);
     for (name, phase) in phases() {
         // Between the two nearest cosines of single precision: rounding to one of them moves a sharp peak.
         let density = |c: f64| {
@@ -342,25 +342,26 @@ fn every_phase_function_is_normalised_and_drawn_from_its_density() {
             let below = if f64::from(near) > c { near.next_down() } else { near };
             let above = below.next_up().min(1.0);
             let t = (c - f64::from(below)) / f64::from(above - below).max(f64::MIN_POSITIVE);
-            f64::from(phase.eval(below)) * (1.0 - t) + f64::from(phase.eval(above)) * t
+            TAU * (f64::from(phase.eval(below)) * (1.0 - t) + f64::from(phase.eval(above)) * t)
         };
-        let ring = |moment: i32, from: f64, to: f64| {
-            integrate_line(&|c| 2.0 * PI * density(c) * c.powi(moment), [from, to], 1e-9)
+        let edge = |i: usize| 2.0 * i as f64 / CELLS as f64 - 1.0;
+        let integrals = |moment: i32| -> Vec<f64> {
+            (0..CELLS).map(|i| gauss_legendre(128, edge(i), edge(i + 1), |c| density(c) * c.powi(moment))).collect()
         };
-        let edge = |i: usize| 2.0 * i as f64 / BINS as f64 - 1.0;
-        let sum = |moment| (0..BINS).map(|i| ring(moment, edge(i), edge(i + 1))).sum::<f64>();
-        assert!((sum(0) - 1.0).abs() < 2e-6, "{name}: {}", sum(0));
-        assert!((sum(1) - f64::from(phase.mean_cosine())).abs() < 2e-6, "{name}: {}", sum(1));
+        let expected = integrals(0);
+        family.check(&format!("{name}, norm"), close(expected.iter().sum(), 1.0, 2e-6));
+        let g = f64::from(phase.mean_cosine());
+        family.check(&format!("{name}, mean cosine"), close(integrals(1).iter().sum(), g, 2e-6));
 
-        let expected: Vec<f64> = (0..BINS).map(|i| ring(0, edge(i), edge(i + 1))).collect();
-        let (mut observed, mut uniforms) = (vec![0u32; BINS], Uniforms::new(8));
+        let (mut observed, mut stream) = (vec![0u64; CELLS], Stream::new(8));
         for _ in 0..500_000 {
-            let c = phase.sample(uniforms.next_1d());
+            let c = phase.sample(stream.next_f32());
             assert!((-1.0..=1.0).contains(&c), "{name}: {c}");
-            observed[(((f64::from(c) + 1.0) * 0.5 * BINS as f64) as usize).min(BINS - 1)] += 1;
+            observed[(((f64::from(c) + 1.0) * 0.5 * CELLS as f64) as usize).min(CELLS - 1)] += 1;
         }
-        assert_chi_square(&name, &observed, &expected, phases().len());
+        family.check(&name, chi_square(&observed, &expected));
     }
+    family.finish();
 }
 
 /// Single scattering of a beam along any direction: the deflected directions follow the phase function on the sphere,
@@ -368,13 +369,14 @@ fn every_phase_function_is_normalised_and_drawn_from_its_density() {
 #[test]
 fn deflected_directions_follow_the_phase_function() {
     let phase = Phase::henyey_greenstein(0.5).unwrap();
+    let mut family = Family::new("deflection", 0.01);
     for dir in [Vec3::Z, Vec3::new(0.36, -0.48, -0.8)] {
-        let expected = bin_integrals(|w| f64::from(phase.eval(w.dot(dir))));
-        let (mut observed, mut uniforms) = (vec![0u32; expected.len()], Uniforms::new(9));
+        let expected = cell_integrals(|w| phase.eval(w.dot(dir)));
+        let (mut observed, mut stream) = (vec![0u64; expected.len()], Stream::new(9));
         for _ in 0..500_000 {
-            let w = deflect(dir, phase.sample(uniforms.next_1d()), uniforms.next_1d());
-            observed[bin_of(w)] += 1;
+            observed[cell_of(deflect(dir, phase.sample(stream.next_f32()), stream.next_f32()))] += 1;
         }
-        assert_chi_square(&format!("{dir}"), &observed, &expected, 2);
+        family.check(&format!("{dir}"), chi_square(&observed, &expected));
     }
+    family.finish();
 }

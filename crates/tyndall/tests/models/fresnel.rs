@@ -1,9 +1,8 @@
 //! Fresnel's equations against closed forms.
 
+use testkit::quadrature::adaptive_simpson;
 use tyndall::bsdf::fresnel::{conductor, dielectric};
 use tyndall::spectrum::Lanes;
-
-use super::sums::integrate_line;
 
 /// ((n − 1)/(n + 1))², from both sides.
 #[test]
@@ -65,7 +64,7 @@ fn without_a_step_of_the_index_nothing_is_reflected_at_any_angle() {
 fn moment(eta: f64, m: i32) -> f64 {
     let f = |mu: f64| f64::from(m + 1) * f64::from(dielectric(mu as f32, eta as f32).reflectance) * mu.powi(m);
     let critical = (1.0 - eta * eta).max(0.0).sqrt();
-    integrate_line(&f, [0.0, critical], 1e-9) + integrate_line(&f, [critical, 1.0], 1e-9)
+    adaptive_simpson(0.0, critical, 1e-7, f) + adaptive_simpson(critical, 1.0, 1e-7, f)
 }
 
 /// Rows `fresnel_diffuse_external`, `fresnel_diffuse_internal`, `fresnel_moment_C1_internal` and `_C2_internal` of
