@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
 mod ci;
+mod peers;
 mod shell;
 mod tidy;
 
@@ -21,6 +22,8 @@ enum Chore {
     Ci,
     /// The rules of STYLE.md that a program can check
     Tidy,
+    /// tyndall against Mitsuba 3, and RGB against spectral colour: agreement and efficiency
+    Peers(peers::Options),
     /// All that is known to be worth checking: ci, then the slow tests
     Full,
 }
@@ -29,6 +32,7 @@ fn main() -> anyhow::Result<()> {
     match Cli::parse().chore {
         Chore::Ci => ci::run(),
         Chore::Tidy => tidy::run(),
+        Chore::Peers(options) => peers::run(&options),
         Chore::Full => ci::run().and_then(|()| ci::run_slow_tests()),
     }
 }
