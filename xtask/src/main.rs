@@ -1,6 +1,7 @@
 //! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `bench`, `full`.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
+mod bench;
 mod ci;
 mod peers;
 mod shell;
@@ -24,7 +25,12 @@ enum Chore {
     Tidy,
     /// tyndall against Mitsuba 3, and RGB against spectral colour: agreement and efficiency
     Peers(peers::Options),
-    /// All that is known to be worth checking: ci, then the slow tests
+    /// The figures that tyndall promises, measured on this machine
+    Bench {
+        #[command(subcommand)]
+        bench: Option<bench::Bench>,
+    },
+    /// All that is known to be worth checking: ci, the slow tests, peers, bench
     Full,
 }
 
@@ -33,6 +39,12 @@ fn main() -> anyhow::Result<()> {
         Chore::Ci => ci::run(),
         Chore::Tidy => tidy::run(),
         Chore::Peers(options) => peers::run(&options),
-        Chore::Full => ci::run().and_then(|()| ci::run_slow_tests()),
+        Chore::Bench { bench } => bench::run(bench),
+        Chore::Full => {
+            ci::run()?;
+            ci::run_slow_tests()?;
+            peers::run(&peers::Options::default())?;
+            bench::run(None)
+        }
     }
 }

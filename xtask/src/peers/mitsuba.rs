@@ -7,8 +7,8 @@ use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
 use super::image::Image;
+use super::runs::{Runs, Turn};
 use super::settings::{Duel, Variant};
-use super::{Runs, Turn};
 use crate::shell::{answers, output, root, tee};
 
 /// The version that the figures of this repository were measured against.

@@ -10,6 +10,7 @@
 pub(crate) mod image;
 pub(crate) mod mitsuba;
 mod report;
+pub(crate) mod runs;
 pub(crate) mod settings;
 pub(crate) mod statistics;
 pub(crate) mod tyndall;
@@ -22,16 +23,17 @@ use clap::Args;
 use crate::shell::root;
 use image::Image;
 use mitsuba::Mitsuba;
-use report::{ColourRow, DuelRow, Side};
+use report::{ColourRow, DuelRow};
+use runs::{Runs, Side, Turn, images};
 use settings::Duel;
-use statistics::{compare, mean_squared_error, median};
+use statistics::compare;
 use tyndall::Tyndall;
 
 /// Probability that one call complains although nothing is wrong, shared among its scenes.
 const FALSE_ALARM: f64 = 0.01;
 
 /// What to compare.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct Options {
     /// Only scenes whose names contain this
     #[arg(long, default_value = "")]
@@ -45,46 +47,6 @@ pub(crate) struct Options {
     /// Mitsuba against itself: no call of tyndall, half of the runs against the other half. Shows what agreement is
     #[arg(long)]
     control: bool,
-}
-
-/// A few runs by one renderer, then as many by the other: one turn.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Turn {
-    /// From 0
-    pub(crate) index: u32,
-    /// Runs of each renderer
-    pub(crate) runs: u32,
-}
-
-impl Turn {
-    /// Seed of its first run; the next runs count on.
-    pub(crate) fn seed(self) -> u32 {
-        1 + self.index * self.runs
-    }
-
-    /// The turns of a comparison.
-    pub(crate) fn all(turns: u32, runs: u32) -> impl Iterator<Item = Self> {
-        (0..turns).map(move |index| Self { index, runs })
-    }
-}
-
-/// Pictures of independent runs and what they took together.
-#[derive(Debug)]
-pub(crate) struct Runs {
-    /// One picture a run
-    pub(crate) images: Vec<Image>,
-    /// CPU seconds of all runs [s]
-    pub(crate) cpu_seconds: f64,
-}
-
-/// Turns of one renderer.
-pub(crate) fn images(turns: &[Runs]) -> Vec<Image> {
-    turns.iter().flat_map(|runs| runs.images.iter().cloned()).collect()
-}
-
-/// CPU seconds of one run in each turn.
-pub(crate) fn cpu_seconds_of_a_run(turns: &[Runs]) -> Vec<f64> {
-    turns.iter().map(|runs| runs.cpu_seconds / runs.images.len() as f64).collect()
 }
 
 /// A scene of Mitsuba's in the repository.
@@ -218,26 +180,4 @@ pub(crate) fn directory(name: &str) -> Result<PathBuf> {
     let directory = root().join("target/peers").join(name);
     std::fs::create_dir_all(&directory)?;
     Ok(directory)
-}
-
-/// Efficiency and its parts, of one renderer on one scene.
-impl Side {
-    /// From the turns of a renderer.
-    pub(crate) fn of(turns: &[Runs], spp: u32) -> Self {
-        let images = images(turns);
-        let cpu_seconds = cpu_seconds_of_a_run(turns);
-        let mse = mean_squared_error(&images);
-        let values = images.iter().flat_map(|image| image.pixels.iter().flatten());
-        let mean =
-            values.map(|&value| f64::from(value)).sum::<f64>() / (images.len() * images[0].pixels.len() * 3) as f64;
-        let efficiency = 1.0 / (mse * median(&cpu_seconds));
-        Self { spp, runs: images.len(), mse, mean, neff: efficiency * mean * mean, efficiency, cpu_seconds }
-    }
-
-    /// The median over the turns of the ratios of efficiencies: each turn met the same weather on the machine.
-    pub(crate) fn efficiency_over(&self, other: &Self) -> f64 {
-        let times: Vec<f64> =
-            other.cpu_seconds.iter().zip(&self.cpu_seconds).map(|(theirs, ours)| theirs / ours).collect();
-        other.mse / self.mse * median(&times)
-    }
 }

@@ -4,26 +4,8 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use super::runs::Side;
 use super::statistics::Agreement;
-
-/// One renderer on one scene.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct Side {
-    /// Samples a pixel in one run
-    pub(crate) spp: u32,
-    /// Independent runs
-    pub(crate) runs: usize,
-    /// Mean squared error of one run, over pixels and channels
-    pub(crate) mse: f64,
-    /// Mean over pixels and channels
-    pub(crate) mean: f64,
-    /// `1/(MSE · CPU s)` [1/s]
-    pub(crate) efficiency: f64,
-    /// The same with the error relative to the mean of the picture: `mean²/(MSE · CPU s)` [1/s]
-    pub(crate) neff: f64,
-    /// CPU seconds of one run, in each turn [s]
-    pub(crate) cpu_seconds: Vec<f64>,
-}
 
 /// tyndall against Mitsuba.
 #[derive(Debug, Clone, Serialize)]

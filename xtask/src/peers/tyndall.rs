@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Context, Result};
 
 use super::image::Image;
-use super::{Runs, Turn};
+use super::runs::{Runs, Turn};
 use crate::shell::{cargo, output, root, tee};
 
 /// The binary `tyndall`, built.
