@@ -111,7 +111,8 @@ fn colour_table(rows: &[ColourRow]) -> String {
 }
 
 fn ratios(channels: &[(f64, f64); 3]) -> String {
-    channels.map(|(ratio, error)| format!("{ratio:.4}±{error:.4}")).join(" ")
+    let is_black = channels.iter().all(|(ratio, _)| ratio.is_nan());
+    if is_black { "–".to_owned() } else { channels.map(|(ratio, error)| format!("{ratio:.4}±{error:.4}")).join(" ") }
 }
 
 /// Three digits, whatever the size.

@@ -13,6 +13,8 @@
 //! - the sum of z²: many tiles a little wrong; χ² with as many degrees of freedom as tiles, per channel,
 //! - the mean of the picture: all tiles a little wrong to the same side.
 //!
+//! Pictures with rare bright samples make z's that are smaller than normal, so the tests are on the safe side there.
+//!
 //! Source: Welch (1947), Biometrika 34; Šidák (1967), JASA 62; Subr and Arvo (2007), "Statistical hypothesis testing
 //! for assessing Monte Carlo estimators".
 
@@ -90,7 +92,9 @@ pub(crate) fn compare(first: &[Image], second: &[Image]) -> Result<Agreement> {
         found.ratio[channel] = ratio(&a, &b);
         found.mean_p = found.mean_p.min(sidak(welch_z(&a, &b).map_or(1.0, two_sided_p), 3));
     }
-    found.extreme_p = sidak(two_sided_p(found.extreme_z), found.tests);
+    if found.tests > 0 {
+        found.extreme_p = sidak(two_sided_p(found.extreme_z), found.tests);
+    }
     Ok(found)
 }
 
@@ -290,7 +294,8 @@ mod tests {
     #[test]
     fn constant_pictures_agree_up_to_rounding() {
         let constant = |value: f32| vec![Image { width: 8, height: 8, pixels: vec![[value; 3]; 64] }; 2];
-        assert_eq!(compare(&constant(0.0), &constant(0.0)).unwrap().tests, 0);
+        let black = compare(&constant(0.0), &constant(0.0)).unwrap();
+        assert_eq!((black.tests, black.p()), (0, 1.0));
         assert!(compare(&constant(1.0), &constant(1.0 + f32::EPSILON)).unwrap().p() > 0.9);
         assert!(compare(&constant(1.0), &constant(1.001)).unwrap().p() < 1e-6);
     }
