@@ -7,8 +7,10 @@
 //! [`bsdf`], [`light`], [`shape`], [`camera`]), then paths and the integrators.
 
 pub mod bsdf;
+pub mod film;
 pub mod math;
 pub mod phase;
 pub mod sampling;
 pub mod shape;
 pub mod spectrum;
+pub mod tally;
