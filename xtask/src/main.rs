@@ -1,7 +1,9 @@
 //! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `bench`, `full`.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
+mod bench;
 mod ci;
+mod peers;
 mod shell;
 mod tidy;
 
@@ -21,7 +23,14 @@ enum Chore {
     Ci,
     /// The rules of STYLE.md that a program can check
     Tidy,
-    /// All that is known to be worth checking: ci, then the slow tests
+    /// tyndall against Mitsuba 3, and RGB against spectral colour: agreement and efficiency
+    Peers(peers::Options),
+    /// The figures that tyndall promises, measured on this machine
+    Bench {
+        #[command(subcommand)]
+        bench: Option<bench::Bench>,
+    },
+    /// All that is known to be worth checking: ci, the slow tests, peers, bench
     Full,
 }
 
@@ -29,6 +38,13 @@ fn main() -> anyhow::Result<()> {
     match Cli::parse().chore {
         Chore::Ci => ci::run(),
         Chore::Tidy => tidy::run(),
-        Chore::Full => ci::run().and_then(|()| ci::run_slow_tests()),
+        Chore::Peers(options) => peers::run(&options),
+        Chore::Bench { bench } => bench::run(bench),
+        Chore::Full => {
+            ci::run()?;
+            ci::run_slow_tests()?;
+            peers::run(&peers::Options::default())?;
+            bench::run(None)
+        }
     }
 }

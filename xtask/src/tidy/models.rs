@@ -4,19 +4,20 @@ use super::tree::Tree;
 
 /// Rooms whose models are drawn from.
 const SAMPLED_ROOMS: [&str; 2] = ["bsdf", "phase"];
+/// Where the table of sampler tests lies.
+const TESTS: &str = "crates/tyndall/tests/";
 /// Rooms whose fields are lengths, coefficients, angles and radiances.
 const PHYSICAL_ROOMS: [&str; 4] = ["medium", "light", "shape", "camera"];
 
-/// Every BSDF and phase function that can be sampled is named in the shared sampler tests: the files
-/// `crates/*/tests/**sampler**.rs`.
+/// Every BSDF and phase function that can be sampled is named in the tests of its crate, where the shared table of
+/// sampler tests lies: the files below `crates/tyndall/tests`.
 pub(crate) fn stands_in_the_sampler_table(tree: &Tree) -> Vec<String> {
-    let is_table = |path: &str| path.contains("/tests/") && path.contains("sampler");
-    let table: String = tree.ending(".rs").filter(|(path, _)| is_table(path)).map(|(_, text)| text).collect();
+    let table: String = tree.ending(".rs").filter(|(path, _)| path.starts_with(TESTS)).map(|(_, text)| text).collect();
     let mut complaints = Vec::new();
     for (path, text) in SAMPLED_ROOMS.iter().flat_map(|room| tree.room(room)) {
         let stem = path.rsplit('/').next().unwrap_or(path).trim_end_matches(".rs");
         if stem != "mod" && text.contains("pub fn sample(") && !table.contains(&camel_case(stem)) {
-            complaints.push(format!("{path}: `{}` has no row in crates/*/tests/*sampler*.rs", camel_case(stem)));
+            complaints.push(format!("{path}: `{}` has no sampler test below {TESTS}", camel_case(stem)));
         }
     }
     complaints
@@ -82,7 +83,7 @@ mod tests {
         assert_eq!(
             stands_in_the_sampler_table(&tree),
             [
-                "crates/tyndall/src/bsdf/rough_dielectric.rs: `RoughDielectric` has no row in crates/*/tests/*sampler*.rs"
+                "crates/tyndall/src/bsdf/rough_dielectric.rs: `RoughDielectric` has no sampler test below crates/tyndall/tests/"
             ]
         );
     }
