@@ -1,1 +1,7 @@
 //! sampling
+
+pub mod discrete;
+pub mod piecewise2d;
+pub mod spherical_rectangle;
+pub mod spherical_triangle;
+pub mod warp;
