@@ -1,2 +1,6 @@
 //! Repository chores.
-fn main() {}
+mod bench_rays;
+mod embree;
+fn main() -> anyhow::Result<()> {
+    bench_rays::run()
+}
