@@ -2,7 +2,9 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
 mod bench;
+mod bench_rays;
 mod ci;
+mod embree;
 mod peers;
 mod shell;
 mod tidy;
