@@ -202,8 +202,9 @@ impl Diagnostics {
         if line.len() > LONGEST_LINE {
             return group.element(Origin::path(path).line(at.line).char_column(at.column));
         }
-        let start = (span.start as usize).clamp(line.start, line.end);
-        let end = (span.end as usize).clamp(start, line.end);
+        // A span that a careless caller put inside a character is widened to it.
+        let start = file.text.floor_char_boundary((span.start as usize).clamp(line.start, line.end));
+        let end = file.text.ceil_char_boundary((span.end as usize).clamp(start, line.end));
         let annotation = kind.span(start - line.start..end - line.start).label(label);
         group.element(Snippet::source(&file.text[line]).line_start(at.line).path(path).annotation(annotation))
     }

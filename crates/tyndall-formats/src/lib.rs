@@ -9,6 +9,7 @@
 
 pub mod desc;
 pub mod error;
+pub mod film;
 pub mod image;
 pub mod mesh;
 pub mod mitsuba;

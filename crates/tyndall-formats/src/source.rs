@@ -7,11 +7,15 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::error::SceneError;
 
-/// The largest scene file that is read \[bytes\]: one byte less than what a `u32` offset can reach is far above it.
+/// The largest scene file that is read \[bytes\]. A `u32` offset reaches further.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// The most text that one scene may have, includes together \[bytes\].
+pub const MAX_TOTAL_BYTES: u64 = 1 << 31;
 
 /// The most files that one scene may read, each include counted.
 pub const MAX_FILES: usize = 10_000;
@@ -72,7 +76,7 @@ pub struct SourceFile {
     /// Where it was read from.
     pub path: PathBuf,
     /// What it holds.
-    pub text: String,
+    pub text: Arc<str>,
     /// The byte at which each line starts.
     line_starts: Vec<u32>,
 }
@@ -81,6 +85,7 @@ pub struct SourceFile {
 #[derive(Clone, Debug, Default)]
 pub struct SourceMap {
     files: Vec<SourceFile>,
+    total_bytes: u64,
 }
 
 /// A place as people count: both from 1, columns in characters.
@@ -100,12 +105,13 @@ impl SourceMap {
     pub fn read(&mut self, path: &Path, from: Option<Span>) -> Result<FileId, SceneError> {
         let error = |message: String| SceneError { span: from, ..SceneError::new(message) };
         let shown = path.display();
-        if path.is_dir() {
-            return Err(error(format!("{shown} is a directory")).help("name the scene file inside it"));
+        // A pipe or a device could go on for ever.
+        if path.metadata().is_ok_and(|m| !m.is_file()) {
+            return Err(error(format!("{shown} is not a file")).help("name a scene file"));
         }
         let file = std::fs::File::open(path).map_err(|e| error(format!("cannot read {shown}: {e}")))?;
         let mut bytes = Vec::new();
-        // One byte more than the limit tells a file that is too long; a pipe or a device has no length to ask for.
+        // One byte more than the limit tells a file that is too long, also if it grows while it is read.
         file.take(MAX_FILE_BYTES + 1)
             .read_to_end(&mut bytes)
             .map_err(|e| error(format!("cannot read {shown}: {e}")))?;
@@ -119,17 +125,20 @@ impl SourceMap {
                 .help("save the file as UTF-8, and check that it is a scene file")
         })?;
         self.add(path, text).ok_or_else(|| {
-            error(format!("the scene reads more than {MAX_FILES} files")).help("does a file include itself?")
+            error(format!("the scene reads more than {MAX_FILES} files or more than 2 GiB of text"))
+                .help("does a file include itself? Keep large meshes in PLY files")
         })
     }
 
     /// Adds a text that is at hand already, such as a scene made by a program or a test. `None` when the map is full
-    /// ([`MAX_FILES`]) or the text is larger than [`MAX_FILE_BYTES`].
-    pub fn add(&mut self, path: impl Into<PathBuf>, text: impl Into<String>) -> Option<FileId> {
+    /// ([`MAX_FILES`], [`MAX_TOTAL_BYTES`]) or the text is larger than [`MAX_FILE_BYTES`].
+    pub fn add(&mut self, path: impl Into<PathBuf>, text: impl Into<Arc<str>>) -> Option<FileId> {
         let text = text.into();
-        if self.files.len() >= MAX_FILES || text.len() as u64 > MAX_FILE_BYTES {
+        let bytes = text.len() as u64;
+        if self.files.len() >= MAX_FILES || bytes > MAX_FILE_BYTES || self.total_bytes + bytes > MAX_TOTAL_BYTES {
             return None;
         }
+        self.total_bytes += bytes;
         let line_starts = std::iter::once(0)
             .chain(text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at as u32 + 1))
             .collect();

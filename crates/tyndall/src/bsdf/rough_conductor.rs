@@ -32,9 +32,10 @@ impl RoughConductor {
             return Lanes::ZERO;
         }
         let (wo, wi) = (seen_from(wo, wo), seen_from(wo, wi));
-        let m = (wo + wi).normalize();
-        let d = self.distribution.density(m) * self.distribution.masking_shadowing_over_cos(wo, wi);
-        self.metal.reflected(wo.dot(m)) * (0.25 * d)
+        let h = wo + wi;
+        let length = h.length();
+        let d = self.distribution.density(h / length) * self.distribution.masking_shadowing_over_cos(wo, wi);
+        self.metal.reflected(0.5 * length) * (0.25 * d)
     }
 
     /// `D_o(m) / (4 o·m)` [1/sr] on the side of `wo`.

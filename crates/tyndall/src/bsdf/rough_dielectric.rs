@@ -34,6 +34,10 @@ struct Facet {
     wo: Vec3,
     wi: Vec3,
     m: Vec3,
+    /// `o·m` > 0.
+    cos_o: f32,
+    /// `i·m`, negative for transmission.
+    cos_i: f32,
     /// Index on the side of `wi` over that on the side of `wo`; 1 for reflection.
     eta: f32,
     split: Split,
@@ -43,27 +47,26 @@ impl RoughDielectric {
     /// `f·|cos θi|` [1/sr].
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Lanes {
-        let Some(Facet { wo, wi, m, eta, split }) = self.facet(wo, wi) else { return Lanes::ZERO };
-        let above = Vec3::new(wi.x, wi.y, wi.z.abs());
-        let d = self.distribution.density(m) * self.distribution.masking_shadowing_over_cos(wo, above);
-        if wi.z > 0.0 {
-            split.reflected * (0.25 * d)
+        let Some(facet) = self.facet(wo, wi) else { return Lanes::ZERO };
+        let above = Vec3::new(facet.wi.x, facet.wi.y, facet.wi.z.abs());
+        let d = self.distribution.density(facet.m) * self.distribution.masking_shadowing_over_cos(facet.wo, above);
+        if facet.cos_i > 0.0 {
+            facet.split.reflected * (0.25 * d)
         } else {
-            let (o, i) = (wo.dot(m), wi.dot(m));
-            let half = o + eta * i;
-            split.transmitted * (d * o * -i / (half * half))
+            let half = facet.cos_o + facet.eta * facet.cos_i;
+            facet.split.transmitted * (d * facet.cos_o * -facet.cos_i / (half * half))
         }
     }
 
     /// The density [1/sr] of [`Self::sample`].
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.facet(wo, wi).map_or(0.0, |Facet { wo, wi, m, eta, split }| {
-            let d = self.distribution.visible_density(wo, m);
-            if wi.z > 0.0 {
-                split.p_reflect * d / (4.0 * wo.dot(m))
+        self.facet(wo, wi).map_or(0.0, |facet| {
+            let d = self.distribution.visible_density(facet.wo, facet.m);
+            if facet.cos_i > 0.0 {
+                facet.split.p_reflect * d / (4.0 * facet.cos_o)
             } else {
-                (1.0 - split.p_reflect) * d * refraction_jacobian(wo.dot(m), wi.dot(m), eta)
+                (1.0 - facet.split.p_reflect) * d * refraction_jacobian(facet.cos_o, facet.cos_i, facet.eta)
             }
         })
     }
@@ -106,21 +109,26 @@ impl RoughDielectric {
         }
     }
 
-    /// `None` when no visible microfacet takes `wo` to `wi`.
+    /// `None` when no visible microfacet takes `wo` to `wi`. The Fresnel reflectance is the same, to the bit, from `wi`
+    /// to `wo`, and in transmission it is taken from the thinner side, where nothing cancels.
     #[inline]
     fn facet(&self, wo: Vec3, wi: Vec3) -> Option<Facet> {
         let (up, wi) = (seen_from(wo, wo), seen_from(wo, wi));
-        let sides = up.z * wi.z;
-        let eta = if sides > 0.0 { 1.0 } else { self.interface.eta_from(wo) };
+        let beyond = self.interface.eta_from(wo);
+        let same_side = up.z * wi.z > 0.0;
+        let eta = if same_side { 1.0 } else { beyond };
         let h = up + wi * eta;
-        let m = h * (1f32.copysign(h.z) / h.length());
+        let length = h.length();
+        let m = h * (1f32.copysign(h.z) / length);
+        let (cos_o, cos_i) = if same_side { (0.5 * length, 0.5 * length) } else { (up.dot(m), wi.dot(m)) };
         // In transmission the microfacet must be seen from its front by wo and from its back by wi.
-        let possible = sides > 0.0 || sides < 0.0 && up.dot(m) > 0.0 && wi.dot(m) < 0.0;
+        let possible = same_side || up.z * wi.z < 0.0 && cos_o > 0.0 && cos_i < 0.0;
         if !possible {
             return None;
         }
-        let split = self.interface.split(fresnel::dielectric(up.dot(m), self.interface.eta_from(wo)).reflectance)?;
-        Some(Facet { wo: up, wi, m, eta, split })
+        let (cos, into) = if eta < 1.0 { (-cos_i, 1.0 / eta) } else { (cos_o, beyond) };
+        let split = self.interface.split(fresnel::dielectric(cos, into).reflectance)?;
+        Some(Facet { wo: up, wi, m, cos_o, cos_i, eta, split })
     }
 }
 

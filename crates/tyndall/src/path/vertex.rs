@@ -55,7 +55,7 @@ impl Vertex {
     /// A vertex on a surface that a ray along `dir` has hit.
     #[inline]
     pub fn surface(hit: Interaction, bsdf: Bsdf, dir: Vec3) -> Self {
-        let frame = hit.frame();
+        let frame = hit.shading_frame();
         Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir) }
     }
 

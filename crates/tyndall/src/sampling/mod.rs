@@ -1,7 +1,10 @@
 //! Random numbers, low-discrepancy samples, and the maps that turn them into directions and choices.
 
+pub mod discrete;
+pub mod piecewise2d;
 pub mod rng;
 pub mod sampler;
+pub mod warp;
 
 pub use rng::Rng;
 pub use sampler::{Sampler, SamplerKind};

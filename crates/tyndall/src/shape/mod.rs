@@ -1,1 +1,30 @@
-//! shape
+//! What light meets: shapes, the tree over them, and the questions that transport asks.
+//!
+//! [`GeometryBuilder`] takes shapes in the order of the scene's objects and gives a [`Geometry`], which answers:
+//! where does this ray hit ([`Geometry::intersect`]), is anything in between ([`Geometry::occluded`]), what is the
+//! surface like there ([`Geometry::interaction`]), and how far is the nearest surface at least
+//! ([`Geometry::clearance`]).
+//!
+//! Which triangle a ray hits is decided without error, so a closed mesh has no leaks (see `bvh`). Where it hits is
+//! computed in double precision and rounded once, with a bound on what rounding did ([`Interaction::error`]); rays
+//! leave a surface from outside that bound ([`Interaction::spawn`]). No length is ever compared with a constant, so a
+//! scene can be of any size.
+
+mod builder;
+mod bvh;
+mod clearance;
+mod disk;
+mod geometry;
+mod instance;
+mod interaction;
+mod mesh;
+mod patch;
+mod sphere;
+
+pub use builder::{GeometryBuilder, GroupId, ShapeError};
+pub use disk::Disk;
+pub use geometry::{Geometry, Hit, ObjectId, Shape};
+pub use interaction::{Interaction, offset_point};
+pub use mesh::Mesh;
+pub use patch::Patch;
+pub use sphere::Sphere;

@@ -19,6 +19,7 @@
 
 pub mod blackbody;
 pub mod cie;
+pub mod glass;
 pub mod lanes;
 pub mod rgb;
 pub mod sampled;
@@ -27,6 +28,7 @@ pub mod uplift;
 pub mod wavelengths;
 
 pub use blackbody::Blackbody;
+pub use glass::Glass;
 pub use lanes::Lanes;
 pub use rgb::{RgbSpectrum, Role};
 pub use sampled::{Sampled, SpectrumError};

@@ -1,0 +1,3 @@
+//! What the program can do, a page each.
+
+pub(crate) mod compare;

@@ -1,0 +1,208 @@
+//! Walks a tree along a ray, nearest boxes first.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+
+use super::{Child, Content, NONE, Node, Primitive, Tree, triangle::Shear};
+use crate::math::{Ray, Vec2, Vec3};
+
+/// Relative error allowed for the distances to a box's planes: see the head of [`super`].
+const SLACK: f32 = 12.0 / (1 << 24) as f32;
+
+/// The nearest hit so far.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::shape) struct Nearest {
+    /// Its distance, or how far to look while there is none.
+    pub(in crate::shape) t: f32,
+    /// `NONE` while there is no hit.
+    pub(in crate::shape) object: u32,
+    pub(in crate::shape) prim: u32,
+    pub(in crate::shape) instance: u32,
+    pub(in crate::shape) uv: Vec2,
+}
+
+impl Nearest {
+    pub(in crate::shape) fn before(t_max: f32) -> Self {
+        Self { t: t_max, object: NONE, prim: 0, instance: NONE, uv: Vec2::ZERO }
+    }
+
+    #[inline(always)]
+    pub(in crate::shape) fn found(&self) -> bool {
+        self.object != NONE
+    }
+}
+
+/// A ray made ready for boxes.
+struct Slabs {
+    origin: Vec3,
+    /// `1/dir`, shortened for the near planes and lengthened for the far ones.
+    near: Vec3,
+    far: Vec3,
+    /// The near plane of each axis in [`Node::planes`]; the far one is its neighbour.
+    side: [usize; 3],
+}
+
+impl Slabs {
+    #[inline(always)]
+    fn new(ray: &Ray) -> Self {
+        // A component too small to invert moves the ray nowhere: any finite inverse does.
+        let inv = ray.dir.to_array().map(|d| 1.0 / d.abs().max(f32::MIN_POSITIVE).copysign(d));
+        let inv = Vec3::from_array(inv);
+        let side = [0, 1, 2].map(|axis| 2 * axis + usize::from(inv[axis] < 0.0));
+        Self { origin: ray.origin, near: inv * (1.0 - SLACK), far: inv * (1.0 + SLACK), side }
+    }
+
+    /// The boxes that the ray meets before `t_max`, and where it enters them.
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, node: &Node, t_max: f32) -> (u32, [f32; 8]) {
+        let distance = |plane: usize, axis: usize, inv: f32| {
+            (f32x8::simd_from(simd, node.planes[plane]) - f32x8::splat(simd, self.origin[axis]))
+                * f32x8::splat(simd, inv)
+        };
+        let near = |axis: usize| distance(self.side[axis], axis, self.near[axis]);
+        let far = |axis: usize| distance(self.side[axis] ^ 1, axis, self.far[axis]);
+        let enter = near(0).max(near(1)).max(near(2)).max(f32x8::splat(simd, 0.0));
+        let leave = far(0).min(far(1)).min(far(2)).min(f32x8::splat(simd, t_max));
+        (enter.simd_le(leave).to_bitmask() as u32, enter.into())
+    }
+}
+
+/// Boxes still to be opened, each as its distance (upper half) and its content (lower half). Distances are not
+/// negative, so these numbers sort like them.
+struct Stack {
+    top: [u64; 64],
+    len: usize,
+    /// For trees deeper than any sensible scene makes them.
+    spill: Vec<u64>,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn push(&mut self, key: u64) {
+        if self.len < self.top.len() {
+            self.top[self.len] = key;
+            self.len += 1;
+        } else {
+            self.spill.push(key);
+        }
+    }
+
+    /// The next box that begins before `t_max`.
+    #[inline(always)]
+    fn pop(&mut self, t_max: f32) -> Option<Child> {
+        loop {
+            let key = match self.spill.pop() {
+                Some(key) => key,
+                None if self.len == 0 => return None,
+                None => {
+                    self.len -= 1;
+                    self.top[self.len & 63]
+                }
+            };
+            if f32::from_bits((key >> 32) as u32) < t_max {
+                return Some(Child(key as u32));
+            }
+        }
+    }
+}
+
+/// Finds the nearest hit before `nearest.t` (or any, if `ANY`) in `tree`; `visit` tests what is not a triangle.
+#[inline(always)]
+pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
+    simd: S,
+    tree: &Tree,
+    ray: &Ray,
+    nearest: &mut Nearest,
+    mut visit: impl FnMut(&Primitive, &mut Nearest),
+) {
+    let Some(mut child) = tree.root else { return };
+    let slabs = Slabs::new(ray);
+    let shear = Shear::new(ray);
+    let mut stack = Stack { top: [0; 64], len: 0, spill: Vec::new() };
+    loop {
+        match child.content() {
+            Content::Node(index) => {
+                let node = &tree.nodes[index];
+                let (mask, enter) = slabs.meet(simd, node, nearest.t);
+                if let Some(first) = open(node, mask, &enter, &mut stack) {
+                    child = first;
+                    continue;
+                }
+            }
+            Content::Packets { first, count } => {
+                for packet in first..first + count {
+                    test_packet(simd, tree, packet, &shear, nearest);
+                }
+            }
+            Content::Others { first, count } => {
+                for primitive in &tree.others[first..first + count] {
+                    visit(primitive, nearest);
+                }
+            }
+        }
+        if ANY && nearest.found() {
+            return;
+        }
+        match stack.pop(nearest.t) {
+            Some(next) => child = next,
+            None => return,
+        }
+    }
+}
+
+/// The nearest box that was met; the others go onto the stack, farthest first.
+#[inline(always)]
+fn open(node: &Node, mask: u32, enter: &[f32; 8], stack: &mut Stack) -> Option<Child> {
+    if mask == 0 {
+        return None;
+    }
+    let key = |mask: u32| {
+        let slot = (mask.trailing_zeros() & 7) as usize;
+        u64::from(enter[slot].to_bits()) << 32 | u64::from(node.child[slot].0)
+    };
+    let first = key(mask);
+    let mask = mask & (mask - 1);
+    if mask == 0 {
+        return Some(Child(first as u32));
+    }
+    let second = key(mask);
+    let mut mask = mask & (mask - 1);
+    if mask == 0 {
+        stack.push(first.max(second));
+        return Some(Child(first.min(second) as u32));
+    }
+    let mut keys = [0; 8];
+    (keys[0], keys[1]) = (first.max(second), first.min(second));
+    let mut len = 2;
+    while mask != 0 {
+        let key = key(mask);
+        mask &= mask - 1;
+        let mut at = len;
+        while at > 0 && keys[at - 1] < key {
+            keys[at & 7] = keys[at - 1];
+            at -= 1;
+        }
+        keys[at & 7] = key;
+        len += 1;
+    }
+    for &key in &keys[..len - 1] {
+        stack.push(key);
+    }
+    Some(Child(keys[len - 1] as u32))
+}
+
+#[inline(always)]
+fn test_packet<S: Simd>(simd: S, tree: &Tree, packet: usize, shear: &Shear, nearest: &mut Nearest) {
+    let triangles = &tree.packets[packet];
+    let mut mask = shear.candidates(simd, triangles, nearest.t);
+    while mask != 0 {
+        let lane = (mask.trailing_zeros() & 7) as usize;
+        mask &= mask - 1;
+        let Some(hit) = shear.resolve(&triangles.triangle(lane)) else { continue };
+        let t = hit.t as f32;
+        if hit.t > 0.0 && t < nearest.t {
+            let id = tree.ids[packet][lane];
+            *nearest = Nearest { t, object: id.object, prim: id.prim, instance: NONE, uv: hit.uv };
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Ray against triangle: which triangle is decided without error (see [`super`]), where is decided in double
+//! precision.
+//!
+//! The exact triangle and its displaced twin of the edge test agree about the distance except when the ray grazes the
+//! plane. So the distance is that to the exact plane, good to the last bit of single precision, which tells a ray that
+//! leaves the surface from one that comes back to it; and for grazing rays it is the mean of the vertices' depths,
+//! which lies in front of the ray whenever the triangle does.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+use glam::DVec3;
+
+use super::Packet;
+use crate::math::{Ray, Vec2, Vec3};
+
+/// A ray made ready for triangles: the axis nearest to its direction and the shear onto it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shear {
+    origin: Vec3,
+    dir: Vec3,
+    /// Axes: x and y of the sheared space, and the one along the ray.
+    axes: [usize; 3],
+    /// `dir_x/dir_z`, `dir_y/dir_z`, `1/dir_z`.
+    by: Vec3,
+}
+
+/// Where a ray meets a triangle: `t`, and the weights of the second and third vertex.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TriangleHit {
+    pub(super) t: f64,
+    pub(super) uv: Vec2,
+}
+
+impl Shear {
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray) -> Self {
+        let a = ray.dir.abs();
+        let axes = if a.x > a.y && a.x > a.z {
+            [1, 2, 0]
+        } else if a.y > a.z {
+            [2, 0, 1]
+        } else {
+            [0, 1, 2]
+        };
+        let d = Vec3::new(ray.dir[axes[0]], ray.dir[axes[1]], ray.dir[axes[2]]);
+        Self { origin: ray.origin, dir: ray.dir, axes, by: Vec3::new(d.x / d.z, d.y / d.z, 1.0 / d.z) }
+    }
+
+    /// The lanes whose triangle the ray's line meets in front of the origin and before `t_max`: all of the truth, and
+    /// those that [`Self::resolve`] will refuse.
+    #[inline(always)]
+    pub(super) fn candidates<S: Simd>(&self, simd: S, packet: &Packet, t_max: f32) -> u32 {
+        let [kx, ky, kz] = self.axes;
+        let (sx, sy) = (f32x8::splat(simd, self.by.x), f32x8::splat(simd, self.by.y));
+        let (ox, oy) = (f32x8::splat(simd, self.origin[kx]), f32x8::splat(simd, self.origin[ky]));
+        let (oz, sz) = (f32x8::splat(simd, self.origin[kz]), f32x8::splat(simd, self.by.z));
+        let sheared = |v: &[[f32; 8]; 3]| {
+            let z = f32x8::simd_from(simd, v[kz]) - oz;
+            let x = (f32x8::simd_from(simd, v[kx]) - ox) - sx * z;
+            let y = (f32x8::simd_from(simd, v[ky]) - oy) - sy * z;
+            (x, y, z * sz)
+        };
+        let (ax, ay, az) = sheared(&packet.vertex[0]);
+        let (bx, by, bz) = sheared(&packet.vertex[1]);
+        let (cx, cy, cz) = sheared(&packet.vertex[2]);
+        let u = cx * by - cy * bx;
+        let v = ax * cy - ay * cx;
+        let w = bx * ay - by * ax;
+        let zero = f32x8::splat(simd, 0.0);
+        let same_sign = u.min(v).min(w).simd_ge(zero) | u.max(v).max(w).simd_le(zero);
+        let in_range = az.max(bz).max(cz).simd_gt(zero) & az.min(bz).min(cz).simd_lt(f32x8::splat(simd, t_max));
+        (same_sign & in_range).to_bitmask() as u32
+    }
+
+    /// The hit on one triangle, if there is one: the same edge functions without error, and the distance.
+    #[inline(always)]
+    pub(super) fn resolve(&self, triangle: &[Vec3; 3]) -> Option<TriangleHit> {
+        let [a, b, c] = triangle.map(|v| self.sheared(v));
+        let u = c.0 * b.1 - c.1 * b.0;
+        let v = a.0 * c.1 - a.1 * c.0;
+        let w = b.0 * a.1 - b.1 * a.0;
+        let det = u + v + w;
+        let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+        if !inside || det == 0.0 {
+            return None;
+        }
+        let inv = 1.0 / det;
+        let t = self.distance(triangle, [u * inv, v * inv, w * inv]);
+        Some(TriangleHit { t, uv: Vec2::new((v * inv) as f32, (w * inv) as f32) })
+    }
+
+    /// The sheared vertex: rounded as in [`Self::candidates`], then exact.
+    #[inline(always)]
+    fn sheared(&self, v: Vec3) -> (f64, f64) {
+        let [kx, ky, kz] = self.axes;
+        let z = v[kz] - self.origin[kz];
+        let x = (v[kx] - self.origin[kx]) - self.by.x * z;
+        let y = (v[ky] - self.origin[ky]) - self.by.y * z;
+        (f64::from(x), f64::from(y))
+    }
+
+    #[inline(always)]
+    fn distance(&self, triangle: &[Vec3; 3], weights: [f64; 3]) -> f64 {
+        // 8u: twice the angle by which rounding turns the displaced triangle, if its aspect is 1.
+        const GRAZING: f64 = 8.0 / (1 << 24) as f64;
+        let (origin, dir) = (self.origin.as_dvec3(), self.dir.as_dvec3());
+        let [p0, p1, p2] = triangle.map(|v| v.as_dvec3() - origin);
+        let (e1, e2): (DVec3, DVec3) = (p1 - p0, p2 - p0);
+        let normal = e1.cross(e2);
+        let slope = normal.dot(dir);
+        let kz = self.axes[2];
+        let inv = 1.0 / dir[kz];
+        let depth = [p0[kz] * inv, p1[kz] * inv, p2[kz] * inv];
+        // Long edges stand for the normal's length here: a thin triangle turns by more.
+        let grazing =
+            slope * slope <= GRAZING * GRAZING * e1.length_squared() * e2.length_squared() * dir.length_squared();
+        if grazing {
+            weights[0] * depth[0] + weights[1] * depth[1] + weights[2] * depth[2]
+        } else {
+            let near = depth[0].min(depth[1]).min(depth[2]);
+            let far = depth[0].max(depth[1]).max(depth[2]);
+            (normal.dot(p0) / slope).clamp(near, far)
+        }
+    }
+}

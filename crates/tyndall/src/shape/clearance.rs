@@ -1,0 +1,229 @@
+//! How far the nearest surface is at least.
+//!
+//! Particle-transport codes call it the safety: a flight that stays within it needs no ray. The bound is never above
+//! the true distance. It is the distance itself, less a few roundings, except for ellipsoids and for instances that
+//! are scaled unevenly, where lengths shrink at most by [`Placement::least_stretch`], and for patches, which stand
+//! inside the hull of their corners.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, dispatch, f32x8};
+use glam::DVec3;
+
+use super::{
+    Disk, Geometry, Patch, Shape, Sphere,
+    bvh::{Child, Content, NONE, Node, Primitive, Tree},
+    instance::Placement,
+};
+use crate::math::Vec3;
+
+/// Double precision leaves less than this of the magnitudes that go into a distance.
+const SLACK: f64 = 1e-14;
+
+impl Geometry {
+    /// A lower bound on the distance from `p` to the nearest surface [length], at most `cap`.
+    pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
+        let nearest = dispatch!(self.level, simd => self.world_clearance(simd, p, cap));
+        // Rounded down: the cast may have rounded up.
+        if nearest < f64::from(cap) { (nearest as f32).next_down().max(0.0) } else { cap }
+    }
+
+    #[inline(always)]
+    fn world_clearance<S: Simd>(&self, simd: S, p: Vec3, cap: f32) -> f64 {
+        search(simd, &self.world, p.as_dvec3(), f64::from(cap), |primitive, cap| match *primitive {
+            Primitive::Instance(index) => self.instance_clearance(simd, index, p, cap),
+            Primitive::Shape { object, instance } if instance != NONE => {
+                let placement = &self.instances[instance as usize].placement;
+                let local = placement.local_point(p.as_dvec3());
+                self.shapes[object as usize].clearance(local) * placement.least_stretch() - placement.slack(local)
+            }
+            _ => self.primitive_clearance(primitive, p.as_dvec3()),
+        })
+    }
+
+    #[inline(never)]
+    fn instance_clearance<S: Simd>(&self, simd: S, index: u32, p: Vec3, cap: f64) -> f64 {
+        let instance = &self.instances[index as usize];
+        let (placement, tree) = (&instance.placement, &self.groups[instance.group as usize]);
+        let stretch = placement.least_stretch();
+        let local = placement.local_point(p.as_dvec3());
+        let found = simd.vectorize(
+            #[inline(always)]
+            || search(simd, tree, local, cap / stretch, |primitive, _| self.primitive_clearance(primitive, local)),
+        );
+        found * stretch - placement.slack(local)
+    }
+
+    fn primitive_clearance(&self, primitive: &Primitive, p: DVec3) -> f64 {
+        match *primitive {
+            Primitive::Sphere { centre, radius, .. } => to_sphere(centre, radius, p),
+            Primitive::Shape { object, .. } => self.shapes[object as usize].clearance(p),
+            Primitive::Instance(_) => f64::INFINITY, // groups hold no instances
+        }
+    }
+}
+
+impl Placement {
+    /// What the rounding of the map to local space may add to a distance.
+    fn slack(&self, local: DVec3) -> f64 {
+        let map = self.map();
+        let size = (map.matrix3.x_axis.abs() + map.matrix3.y_axis.abs() + map.matrix3.z_axis.abs()).max_element();
+        SLACK * (size * local.abs().max_element() + map.translation.abs().max_element())
+    }
+}
+
+impl Shape {
+    fn clearance(&self, p: DVec3) -> f64 {
+        match self {
+            Self::Mesh(_) => f64::INFINITY, // its triangles are in packets
+            Self::Sphere(sphere) => sphere.clearance(p),
+            Self::Disk(disk) => disk.clearance(p),
+            Self::Patch(patch) => patch.clearance(p),
+        }
+    }
+}
+
+impl Sphere {
+    fn clearance(&self, p: DVec3) -> f64 {
+        match &self.placement {
+            None => to_sphere(self.centre, self.radius, p),
+            Some(placement) => {
+                let local = placement.local_point(p);
+                to_sphere(self.centre, self.radius, local) * placement.least_stretch() - placement.slack(local)
+            }
+        }
+    }
+}
+
+impl Disk {
+    /// Of an ellipse: the distance to the rectangle around it.
+    fn clearance(&self, p: DVec3) -> f64 {
+        let (centre, a, b) = (self.centre.as_dvec3(), self.a.as_dvec3(), self.b.as_dvec3());
+        let slack = SLACK * (p - centre).abs().max_element();
+        if self.radius().is_none() {
+            let corner = |x: f64, y: f64| centre + a * x + b * y;
+            let [q0, q1, q2, q3] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            let square = to_triangle_squared([q0, q1, q2], p).min(to_triangle_squared([q0, q2, q3], p));
+            return square.sqrt() - slack;
+        }
+        let from = p - centre;
+        let height = a.cross(b).normalize().dot(from);
+        let across = (from.length_squared() - height * height).max(0.0).sqrt();
+        // The half-axes are rounded: allow for either being the longer.
+        let rounding = f64::from(f32::EPSILON) * 8.0;
+        let outer = a.length() * (1.0 + rounding);
+        let inner = outer * f64::from(self.inner) * (1.0 - 3.0 * rounding);
+        let beside = (across - outer).max(inner - across).max(0.0);
+        height.hypot(beside) * (1.0 - 2.0 * rounding) - slack
+    }
+}
+
+impl Patch {
+    /// Distance to the tetrahedron of the corners, which holds the patch: its four faces, or 0 inside.
+    fn clearance(&self, p: DVec3) -> f64 {
+        let [a, b, c, d] = self.corners.map(Vec3::as_dvec3);
+        let faces = [([a, b, c], d), ([b, c, d], a), ([c, d, a], b), ([d, a, b], c)];
+        let inside = faces.iter().all(|&([x, y, z], other)| {
+            let normal = (y - x).cross(z - x);
+            normal.dot(p - x) * normal.dot(other - x) >= 0.0
+        });
+        if inside {
+            return 0.0;
+        }
+        let square = faces.iter().map(|&(face, _)| to_triangle_squared(face, p)).fold(f64::INFINITY, f64::min);
+        square.sqrt() - SLACK * (p - a).abs().max_element()
+    }
+}
+
+fn to_sphere(centre: Vec3, radius: f32, p: DVec3) -> f64 {
+    let (centre, radius) = (centre.as_dvec3(), f64::from(radius));
+    let distance = (p - centre).length();
+    (distance - radius).abs() - SLACK * (distance + radius)
+}
+
+/// The least distance in `tree`, if it is below `cap`; else `cap`.
+#[inline(always)]
+fn search<S: Simd>(simd: S, tree: &Tree, p: DVec3, cap: f64, mut visit: impl FnMut(&Primitive, f64) -> f64) -> f64 {
+    let mut nearest = cap;
+    let Some(root) = tree.root else { return nearest };
+    let point = p.as_vec3();
+    let mut stack = vec![(0f32, root)];
+    while let Some((square, child)) = stack.pop() {
+        if f64::from(square) >= nearest * nearest {
+            continue;
+        }
+        match child.content() {
+            Content::Node(index) => {
+                let node = &tree.nodes[index];
+                open(&mut stack, node, &squares_to_boxes(simd, node, point), nearest);
+            }
+            Content::Packets { first, count } => {
+                for packet in &tree.packets[first..first + count] {
+                    for lane in 0..8 {
+                        let triangle = packet.triangle(lane).map(Vec3::as_dvec3);
+                        let slack = SLACK * (p - triangle[0]).abs().max_element();
+                        nearest = nearest.min(to_triangle_squared(triangle, p).sqrt() - slack);
+                    }
+                }
+            }
+            Content::Others { first, count } => {
+                for primitive in &tree.others[first..first + count] {
+                    nearest = nearest.min(visit(primitive, nearest));
+                }
+            }
+        }
+        if nearest <= 0.0 {
+            return 0.0;
+        }
+    }
+    nearest
+}
+
+/// Puts the boxes nearer than `nearest` onto the stack, the nearest last.
+#[inline(always)]
+fn open(stack: &mut Vec<(f32, Child)>, node: &Node, squares: &[f32; 8], nearest: f64) {
+    let base = stack.len();
+    for (&square, &child) in squares.iter().zip(&node.child) {
+        if f64::from(square) < nearest * nearest {
+            let at = base + stack[base..].partition_point(|&(other, _)| other > square);
+            stack.insert(at, (square, child));
+        }
+    }
+}
+
+/// Lower bounds on the squared distances to the eight boxes.
+#[inline(always)]
+fn squares_to_boxes<S: Simd>(simd: S, node: &Node, p: Vec3) -> [f32; 8] {
+    let zero = f32x8::splat(simd, 0.0);
+    let beside = |axis: usize| {
+        // In local space the point itself is rounded.
+        let slack = f32x8::splat(simd, p[axis].abs() * f32::EPSILON);
+        let at = f32x8::splat(simd, p[axis]);
+        let below = f32x8::simd_from(simd, node.planes[2 * axis]) - at;
+        let above = at - f32x8::simd_from(simd, node.planes[2 * axis + 1]);
+        (below.max(above) - slack).max(zero)
+    };
+    let (x, y, z) = (beside(0), beside(1), beside(2));
+    ((x * x + y * y + z * z) * f32x8::splat(simd, 1.0 - 8.0 * f32::EPSILON)).into()
+}
+
+/// Squared distance to a triangle (after Ericson 2005, § 5.1.5), exact enough in double precision for triangles as
+/// thin as single precision can make them: each region's answer is the distance to a line or plane of the triangle.
+fn to_triangle_squared([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let edges = to_segment_squared(a, b, p).min(to_segment_squared(b, c, p)).min(to_segment_squared(c, a, p));
+    let normal = (b - a).cross(c - a);
+    let square = normal.length_squared();
+    let above = |from: DVec3, to: DVec3| normal.cross(to - from).dot(p - from) >= 0.0;
+    if square > 0.0 && above(a, b) && above(b, c) && above(c, a) {
+        let height = normal.dot(p - a);
+        edges.min(height * height / square)
+    } else {
+        edges
+    }
+}
+
+fn to_segment_squared(a: DVec3, b: DVec3, p: DVec3) -> f64 {
+    let (along, from) = (b - a, p - a);
+    let length = along.length_squared();
+    let t = if length > 0.0 { (along.dot(from) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (from - along * t).length_squared()
+}

@@ -1,0 +1,122 @@
+//! Flat disks and rings.
+//!
+//! A disk is kept as its centre and two half-axes, so any affine map of a disk is a disk of the same kind (in general
+//! an ellipse).
+
+use glam::DVec3;
+
+use super::{ShapeError, instance::outward, interaction::Point};
+use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
+
+/// The points `centre + x·a + y·b` with `inner² ≤ x² + y² ≤ 1`. `u` is the azimuth in turns; `v` runs from 0 at the
+/// rim to 1 at the inner edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disk {
+    /// Centre [length].
+    pub centre: Vec3,
+    /// Half-axis at azimuth 0 [length].
+    pub a: Vec3,
+    /// Half-axis a quarter turn on [length].
+    pub b: Vec3,
+    /// Radius of the hole, as a fraction of the outer radius, in `[0, 1)`.
+    pub inner: f32,
+    /// Whether the normal is `−a × b`.
+    pub reversed: bool,
+}
+
+impl Disk {
+    /// The disk at `z = height` around the z axis, facing +z.
+    pub fn new(height: f32, radius: f32, inner_radius: f32) -> Self {
+        Self {
+            centre: Vec3::Z * height,
+            a: Vec3::X * radius,
+            b: Vec3::Y * radius,
+            inner: inner_radius / radius,
+            reversed: false,
+        }
+    }
+
+    /// Unit normal.
+    pub fn normal(&self) -> Vec3 {
+        self.outward().normalize_or_zero().as_vec3()
+    }
+
+    fn outward(&self) -> DVec3 {
+        let n = self.a.as_dvec3().cross(self.b.as_dvec3());
+        if self.reversed { -n } else { n }
+    }
+
+    /// The outer radius [length] if the disk is a circle.
+    pub fn radius(&self) -> Option<f32> {
+        let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
+        let square = a.length_squared();
+        let tolerance = 4.0 * f64::from(f32::EPSILON) * square;
+        let circular = (square - b.length_squared()).abs() <= tolerance && a.dot(b).abs() <= tolerance;
+        circular.then(|| square.sqrt() as f32)
+    }
+
+    pub(super) fn check(&self) -> Result<(), ShapeError> {
+        if !(self.centre.is_finite() && self.a.is_finite() && self.b.is_finite() && self.inner.is_finite()) {
+            return Err(ShapeError::NotFinite);
+        }
+        if self.outward() == DVec3::ZERO {
+            return Err(ShapeError::NotPositive { what: "radius", value: 0.0 });
+        }
+        Ok(())
+    }
+
+    pub(super) fn placed(mut self, transform: &Transform, reversed: bool) -> Self {
+        let map = transform.matrix.as_dmat4();
+        self.centre = map.transform_point3(self.centre.as_dvec3()).as_vec3();
+        self.a = map.transform_vector3(self.a.as_dvec3()).as_vec3();
+        self.b = map.transform_vector3(self.b.as_dvec3()).as_vec3();
+        self.reversed = reversed != transform.mirrors();
+        self
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
+        let half = (a * a + b * b).map(f64::sqrt) * (1.0 + f64::from(f32::EPSILON));
+        outward(self.centre.as_dvec3() - half, self.centre.as_dvec3() + half)
+    }
+
+    /// The distance to the disk, if it is positive and before `t_max`.
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<f32> {
+        let n = self.a.as_dvec3().cross(self.b.as_dvec3());
+        let from = ray.origin.as_dvec3() - self.centre.as_dvec3();
+        let t = -n.dot(from) / n.dot(ray.dir.as_dvec3());
+        if !(t > 0.0 && (t as f32) < t_max) {
+            return None;
+        }
+        let (x, y) = self.coordinates(from + ray.dir.as_dvec3() * t);
+        let (square, inner) = (x * x + y * y, f64::from(self.inner));
+        (square <= 1.0 && square >= inner * inner).then_some(t as f32)
+    }
+
+    /// `(x, y)` of a vector from the centre.
+    fn coordinates(&self, v: DVec3) -> (f64, f64) {
+        let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
+        let n = a.cross(b);
+        let square = n.length_squared();
+        (b.cross(n).dot(v) / square, n.cross(a).dot(v) / square)
+    }
+
+    pub(super) fn point(&self, ray: &Ray, t: f32) -> Point {
+        let (centre, n) = (self.centre.as_dvec3(), self.outward());
+        let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
+        let (x, y) = self.coordinates(ray.origin.as_dvec3() - centre + ray.dir.as_dvec3() * f64::from(t));
+        let turn = y.atan2(x) / std::f64::consts::TAU;
+        let u = if turn < 0.0 { turn + 1.0 } else { turn };
+        let r = x.hypot(y);
+        let v = (1.0 - r) / (1.0 - f64::from(self.inner));
+        let dpdu = if r == 0.0 { b } else { b * x - a * y } * std::f64::consts::TAU;
+        Point {
+            p: centre + a * x + b * y,
+            error: (centre.abs().max_element() + a.abs().max_element() + b.abs().max_element()) * (-45f64).exp2(),
+            ng: n,
+            ns: n,
+            uv: Vec2::new(u as f32, v as f32),
+            dpdu,
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! All shapes of a scene, and the questions that transport asks of them.
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::{
+    Disk, Interaction, Mesh, Patch, Sphere,
+    bvh::{
+        NONE, Primitive, Tree,
+        traverse::{Nearest, traverse},
+    },
+    instance::Instance,
+    interaction::Point,
+    sphere,
+};
+use crate::math::{Bounds, Ray, Vec2, Vec3};
+
+/// Index into the scene's objects: one shape directive, which may be many triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ObjectId(pub u32);
+
+/// Where a ray meets a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Distance [length if the ray's direction is unit].
+    pub t: f32,
+    /// The object.
+    pub object: ObjectId,
+    /// The part of the object: triangle index, or 0.
+    pub prim: u32,
+    /// For triangles the weights of the second and third vertex, for patches `(u, v)`, else 0.
+    pub uv: Vec2,
+    /// The instance, or [`Hit::NO_INSTANCE`].
+    pub instance: u32,
+}
+
+impl Hit {
+    /// The object stands in the world itself.
+    pub const NO_INSTANCE: u32 = NONE;
+}
+
+/// The kinds of shapes.
+#[derive(Debug, Clone)]
+pub enum Shape {
+    /// Triangles.
+    Mesh(Mesh),
+    /// A sphere or an ellipsoid.
+    Sphere(Sphere),
+    /// A disk or a ring.
+    Disk(Disk),
+    /// A bilinear patch that is not flat.
+    Patch(Patch),
+}
+
+impl Shape {
+    pub(super) fn bounds(&self) -> Bounds {
+        match self {
+            Self::Mesh(mesh) => Bounds::of(mesh.positions.iter().copied()),
+            Self::Sphere(sphere) => sphere.bounds(),
+            Self::Disk(disk) => disk.bounds(),
+            Self::Patch(patch) => patch.bounds(),
+        }
+    }
+
+    /// The nearest hit before `t_max` on a shape that is not a mesh.
+    fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
+        match self {
+            Self::Mesh(_) => None,
+            Self::Sphere(sphere) => sphere.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
+            Self::Disk(disk) => disk.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
+            Self::Patch(patch) => patch.intersect(ray, t_max).map(|hit| (hit.t, hit.uv)),
+        }
+    }
+
+    fn point(&self, ray: &Ray, t: f32, prim: u32, uv: Vec2) -> Point {
+        match self {
+            Self::Mesh(mesh) => mesh.point(prim, uv),
+            Self::Sphere(sphere) => sphere.point(ray, t),
+            Self::Disk(disk) => disk.point(ray, t),
+            Self::Patch(patch) => patch.point(uv),
+        }
+    }
+}
+
+/// The shapes of a scene and the trees over them. Made by [`super::GeometryBuilder`], then never changed.
+#[derive(Debug, Clone)]
+pub struct Geometry {
+    /// The instruction set, asked for once.
+    pub(super) level: Level,
+    pub(super) shapes: Vec<Shape>,
+    pub(super) world: Tree,
+    pub(super) groups: Vec<Tree>,
+    pub(super) instances: Vec<Instance>,
+}
+
+impl Geometry {
+    pub(super) fn new(shapes: Vec<Shape>, world: Tree, groups: Vec<Tree>, instances: Vec<Instance>) -> Self {
+        Self { level: Level::new(), shapes, world, groups, instances }
+    }
+
+    /// The nearest surface with `0 < t < t_max`.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
+        let mut nearest = Nearest::before(t_max);
+        dispatch!(self.level, simd => self.search::<_, false>(simd, ray, &mut nearest));
+        nearest.found().then_some(Hit {
+            t: nearest.t,
+            object: ObjectId(nearest.object),
+            prim: nearest.prim,
+            uv: nearest.uv,
+            instance: nearest.instance,
+        })
+    }
+
+    /// Whether there is any surface with `0 < t < t_max`.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray, t_max: f32) -> bool {
+        let mut nearest = Nearest::before(t_max);
+        dispatch!(self.level, simd => self.search::<_, true>(simd, ray, &mut nearest));
+        nearest.found()
+    }
+
+    #[inline(always)]
+    fn search<S: Simd, const ANY: bool>(&self, simd: S, ray: &Ray, nearest: &mut Nearest) {
+        traverse::<S, ANY>(simd, &self.world, ray, nearest, |primitive, nearest| {
+            if let Primitive::Instance(index) = *primitive {
+                self.search_instance::<S, ANY>(simd, index, ray, nearest);
+            } else {
+                self.test(primitive, ray, nearest);
+            }
+        });
+    }
+
+    /// Not inlined: one traversal inside another is too much for the registers.
+    #[inline(never)]
+    fn search_instance<S: Simd, const ANY: bool>(&self, simd: S, index: u32, ray: &Ray, nearest: &mut Nearest) {
+        let Instance { group, placement } = &self.instances[index as usize];
+        let local = placement.ray_to_local(ray);
+        let mut inside = Nearest::before(nearest.t);
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                traverse::<S, ANY>(simd, &self.groups[*group as usize], &local, &mut inside, |primitive, nearest| {
+                    self.test(primitive, &local, nearest);
+                });
+            },
+        );
+        if inside.found() {
+            *nearest = Nearest { instance: index, ..inside };
+        }
+    }
+
+    #[inline(always)]
+    fn test(&self, primitive: &Primitive, ray: &Ray, nearest: &mut Nearest) {
+        match *primitive {
+            Primitive::Sphere { centre, radius, object, instance } => {
+                if let Some(t) = sphere::nearest(centre, radius, ray, nearest.t) {
+                    *nearest = Nearest { t, object, prim: 0, instance, uv: Vec2::ZERO };
+                }
+            }
+            Primitive::Shape { object, instance } => self.test_shape(object, instance, ray, nearest),
+            Primitive::Instance(_) => {} // groups hold no instances
+        }
+    }
+
+    #[inline(never)]
+    fn test_shape(&self, object: u32, instance: u32, ray: &Ray, nearest: &mut Nearest) {
+        let ray = if instance == NONE { *ray } else { self.instances[instance as usize].placement.ray_to_local(ray) };
+        if let Some((t, uv)) = self.shapes[object as usize].intersect(&ray, nearest.t) {
+            *nearest = Nearest { t, object, prim: 0, instance, uv };
+        }
+    }
+
+    /// The surface at a hit of this ray.
+    pub fn interaction(&self, ray: &Ray, hit: &Hit) -> Interaction {
+        let shape = &self.shapes[hit.object.0 as usize];
+        let point = if hit.instance == NONE {
+            shape.point(ray, hit.t, hit.prim, hit.uv)
+        } else {
+            let placement = &self.instances[hit.instance as usize].placement;
+            let local = placement.ray_to_local(ray);
+            placement.place(&shape.point(&local, hit.t, hit.prim, hit.uv))
+        };
+        point.round(hit.object, hit.prim)
+    }
+
+    /// A box around everything.
+    pub fn bounds(&self) -> Bounds {
+        self.world.bounds
+    }
+
+    /// A box around one object, in world space unless it is part of a group.
+    pub fn object_bounds(&self, object: ObjectId) -> Bounds {
+        self.shape(object).bounds()
+    }
+
+    /// A shape, in world space unless it is part of a group.
+    pub fn shape(&self, object: ObjectId) -> &Shape {
+        &self.shapes[object.0 as usize]
+    }
+
+    /// The vertices of a triangle [length], or `None` if the object is not a mesh or has no such triangle.
+    pub fn triangle(&self, object: ObjectId, prim: u32) -> Option<[Vec3; 3]> {
+        match self.shape(object) {
+            Shape::Mesh(mesh) if (prim as usize) < mesh.indices.len() => Some(mesh.triangle(prim)),
+            _ => None,
+        }
+    }
+}

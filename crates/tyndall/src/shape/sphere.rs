@@ -1,0 +1,168 @@
+//! Spheres.
+//!
+//! The quadratic is solved in double precision with the discriminant taken from the ray's closest approach to the
+//! centre (Haines et al. 2019), so that a small sphere far away keeps its shape, and the smaller root is taken from
+//! the product of the roots, so that a ray that starts on the surface knows it. The hit point is projected onto the
+//! sphere.
+
+use glam::{DMat3, DVec3};
+
+use super::{
+    ShapeError,
+    instance::{Placement, outward},
+    interaction::Point,
+};
+use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
+
+/// A full sphere. Its poles are along its own z axis: `u` is the azimuth in turns, `v` runs from the south pole to
+/// the north pole.
+#[derive(Debug, Clone, Copy)]
+pub struct Sphere {
+    /// Centre [length].
+    pub centre: Vec3,
+    /// Radius [length].
+    pub radius: f32,
+    /// Whether the normal points to the centre.
+    pub reversed: bool,
+    /// To the sphere's own axes (of a unit or mirrored unit matrix).
+    pub(super) axes: DMat3,
+    /// For spheres that the world sees as ellipsoids.
+    pub(super) placement: Option<Placement>,
+}
+
+impl Sphere {
+    /// A sphere around `centre`.
+    pub fn new(centre: Vec3, radius: f32) -> Self {
+        Self { centre, radius, reversed: false, axes: DMat3::IDENTITY, placement: None }
+    }
+
+    pub(super) fn check(&self) -> Result<(), ShapeError> {
+        if !(self.centre.is_finite() && self.radius.is_finite()) {
+            return Err(ShapeError::NotFinite);
+        }
+        if self.radius <= 0.0 {
+            return Err(ShapeError::NotPositive { what: "radius", value: self.radius });
+        }
+        Ok(())
+    }
+
+    /// The sphere in world space: itself a sphere if the transform is a similarity.
+    pub(super) fn placed(mut self, transform: &Transform, reversed: bool) -> Self {
+        self.reversed = reversed;
+        if *transform != Transform::IDENTITY {
+            let placement = Placement::new(transform);
+            match self.moved(&placement) {
+                Some((centre, radius)) => {
+                    self.axes = placement.map().matrix3.inverse() * f64::from(radius / self.radius);
+                    (self.centre, self.radius) = (centre, radius);
+                }
+                None => self.placement = Some(placement),
+            }
+        }
+        self
+    }
+
+    /// Centre and radius after a similarity.
+    pub(super) fn moved(&self, placement: &Placement) -> Option<(Vec3, f32)> {
+        let scale = placement.uniform_scale().filter(|_| self.placement.is_none())?;
+        let centre = placement.map().transform_point3(self.centre.as_dvec3()).as_vec3();
+        let radius = (f64::from(self.radius) * scale) as f32;
+        (centre.is_finite() && radius.is_normal()).then_some((centre, radius))
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        let (centre, radius) = (self.centre.as_dvec3(), f64::from(self.radius));
+        match &self.placement {
+            None => outward(centre - radius, centre + radius),
+            Some(placement) => {
+                let map = placement.map();
+                let rows = map.matrix3.transpose();
+                let half = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()) * radius;
+                let middle = map.transform_point3(centre);
+                let slack = (middle.abs() + half) * f64::from(f32::EPSILON);
+                outward(middle - half - slack, middle + half + slack)
+            }
+        }
+    }
+
+    /// The least positive distance before `t_max`.
+    #[inline]
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<f32> {
+        match &self.placement {
+            None => nearest(self.centre, self.radius, ray, t_max),
+            Some(placement) => nearest(self.centre, self.radius, &placement.ray_to_local(ray), t_max),
+        }
+    }
+
+    pub(super) fn point(&self, ray: &Ray, t: f32) -> Point {
+        match &self.placement {
+            None => self.local_point(ray, t),
+            Some(placement) => {
+                let local = placement.ray_to_local(ray);
+                placement.place(&self.local_point(&local, t))
+            }
+        }
+    }
+
+    fn local_point(&self, ray: &Ray, t: f32) -> Point {
+        let (centre, radius) = (self.centre.as_dvec3(), f64::from(self.radius));
+        // `t` was rounded: of a small sphere far away it has lost the place, so solve again.
+        let t = match roots(centre, radius, ray) {
+            Some([near, far]) if (near - f64::from(t)).abs() <= (far - f64::from(t)).abs() => near,
+            Some([_, far]) => far,
+            None => f64::from(t),
+        };
+        let outward = (ray.origin.as_dvec3() - centre + ray.dir.as_dvec3() * t).normalize_or(DVec3::Z);
+        let local = self.axes * outward;
+        let (uv, dpdu) = parameters(local, radius);
+        let ng = if self.reversed { -outward } else { outward };
+        Point {
+            p: centre + outward * radius,
+            error: (centre.abs().max_element() + radius) * (-45f64).exp2(),
+            ng,
+            ns: ng,
+            uv,
+            dpdu: self.axes.transpose() * dpdu,
+        }
+    }
+}
+
+/// `(u, v)` of a direction from the centre, and the derivative of the point by `u`.
+fn parameters(n: DVec3, radius: f64) -> (Vec2, DVec3) {
+    use std::f64::consts::{PI, TAU};
+    let phi = n.y.atan2(n.x);
+    let u = if phi < 0.0 { phi / TAU + 1.0 } else { phi / TAU };
+    let v = 1.0 - n.z.clamp(-1.0, 1.0).acos() / PI;
+    let around = DVec3::new(-n.y, n.x, 0.0);
+    let dpdu = if around == DVec3::ZERO { DVec3::Y } else { around };
+    (Vec2::new(u as f32, v as f32), dpdu * (TAU * radius))
+}
+
+/// The least positive distance to a sphere before `t_max`.
+#[inline(always)]
+pub(super) fn nearest(centre: Vec3, radius: f32, ray: &Ray, t_max: f32) -> Option<f32> {
+    let [near, far] = roots(centre.as_dvec3(), f64::from(radius), ray)?;
+    let t = if near > 0.0 { near } else { far };
+    (t > 0.0 && (t as f32) < t_max).then_some(t as f32)
+}
+
+/// Both distances along the ray's line, in order.
+#[inline(always)]
+fn roots(centre: DVec3, radius: f64, ray: &Ray) -> Option<[f64; 2]> {
+    let from = ray.origin.as_dvec3() - centre;
+    let dir = ray.dir.as_dvec3();
+    let a = dir.length_squared();
+    let b = -from.dot(dir);
+    let approach = from + dir * (b / a);
+    let discriminant = radius * radius - approach.length_squared();
+    if discriminant < 0.0 {
+        return None;
+    }
+    let c = from.length_squared() - radius * radius;
+    let q = b + (a * discriminant).sqrt().copysign(b);
+    if q == 0.0 {
+        return None; // a tangent that starts where it touches
+    }
+    let (t0, t1) = (c / q, q / a);
+    Some([t0.min(t1), t0.max(t1)])
+}
