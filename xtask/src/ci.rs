@@ -5,7 +5,7 @@
 use anyhow::{Context, Result, ensure};
 
 use crate::shell::{Stages, answers, cargo, root, tee};
-use crate::tidy;
+use crate::{docs, tidy};
 
 /// All stages, in turn; stops at the first that fails.
 pub(crate) fn run() -> Result<()> {
@@ -13,9 +13,7 @@ pub(crate) fn run() -> Result<()> {
     stages.stage("tidy", tidy::run)?;
     stages.stage("format", || tee(&mut cargo("fmt --all --check")))?;
     stages.stage("lints", || tee(&mut cargo("clippy --workspace --all-targets -- -D warnings")))?;
-    stages.stage("docs", || {
-        tee(cargo("doc --workspace --no-deps --document-private-items").env("RUSTDOCFLAGS", "-D warnings"))
-    })?;
+    stages.stage("docs", docs::check)?;
     let tests = stages.stage("tests", || run_tests(Which::Quick))?;
     let doc_tests = stages.stage("doc-tests", || Ok(Counts::read(&tee(&mut cargo("test --doc --workspace"))?)))?;
     stages.stage("smoke test", smoke_test)?;

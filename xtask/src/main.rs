@@ -2,10 +2,15 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
 mod bench;
+mod bench_rays;
 mod ci;
+mod embree;
+mod docs;
 mod peers;
 mod shell;
 mod tidy;
+
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
@@ -34,8 +39,18 @@ enum Chore {
     Full,
 }
 
-fn main() -> anyhow::Result<()> {
-    match Cli::parse().chore {
+fn main() -> ExitCode {
+    match run(Cli::parse().chore) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("\nerror: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(chore: Chore) -> anyhow::Result<()> {
+    match chore {
         Chore::Ci => ci::run(),
         Chore::Tidy => tidy::run(),
         Chore::Peers(options) => peers::run(&options),
