@@ -1,7 +1,7 @@
 //! pbrt-v4 scenes.
 //!
-//! [`lexer`] makes words of a text, [`parser`] statements of the words, [`directives`] carries them out one after the other
-//! on the graphics state ([`state`]), and what they make goes into the [`SceneDesc`]. Includes are read where they stand,
+//! `lexer` makes words of a text, `parser` statements of the words, `directives` carries them out one after the other
+//! on the graphics state (`state`), and what they make goes into the [`SceneDesc`]. Includes are read where they stand,
 //! relative to the directory of the scene file.
 //!
 //! Where we differ from pbrt-v4 on purpose:
