@@ -76,7 +76,7 @@ impl Slabs {
 
 /// Boxes still to be opened, each as its distance (upper half) and its content (lower half). Distances are not
 /// negative, so these numbers sort like them.
-struct Stack {
+pub(in crate::shape) struct Stack {
     top: [u64; 32],
     len: usize,
     /// For the rest, which is rarely needed; the top is kept short because it is cleared for every ray.
@@ -84,6 +84,11 @@ struct Stack {
 }
 
 impl Stack {
+    #[inline(always)]
+    pub(in crate::shape) fn new() -> Self {
+        Self { top: [0; 32], len: 0, spill: Vec::new() }
+    }
+
     #[inline(always)]
     fn push(&mut self, key: u64) {
         if self.len < self.top.len() {
@@ -96,7 +101,7 @@ impl Stack {
 
     /// The next box that begins before `t_max`.
     #[inline(always)]
-    fn pop(&mut self, t_max: f32) -> Option<Child> {
+    pub(in crate::shape) fn pop(&mut self, t_max: f32) -> Option<Child> {
         loop {
             let key = match self.spill.pop() {
                 Some(key) => key,
@@ -124,7 +129,7 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
 ) {
     let Some(mut child) = tree.root else { return };
     let slabs = Slabs::new(ray);
-    let mut stack = Stack { top: [0; 32], len: 0, spill: Vec::new() };
+    let mut stack = Stack::new();
     loop {
         match child.content() {
             Content::Node(index) => {
@@ -174,7 +179,7 @@ fn prefetch_children(tree: &Tree, node: &Node, mut mask: u32) {
 
 /// The nearest box that was met; the others go onto the stack, farthest first.
 #[inline(always)]
-fn open(node: &Node, mask: u32, enter: &[f32; 8], stack: &mut Stack) -> Option<Child> {
+pub(in crate::shape) fn open(node: &Node, mask: u32, enter: &[f32; 8], stack: &mut Stack) -> Option<Child> {
     if mask == 0 {
         return None;
     }
