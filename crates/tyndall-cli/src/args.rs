@@ -160,6 +160,9 @@ pub(crate) struct LectureOptions {
     /// Samples a pixel of the reference, by volpath
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) reference_spp: u32,
+    /// Size of the images [default: that of the scenes]
+    #[arg(long, value_name = "WxH", value_parser = values::resolution)]
+    pub(crate) resolution: Option<[u32; 2]>,
     /// Directory to write to
     #[arg(long, value_name = "DIR", default_value = "lecture")]
     pub(crate) out: PathBuf,

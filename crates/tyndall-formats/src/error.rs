@@ -115,6 +115,13 @@ impl ErrorList {
         result.map_err(|error| self.push(error)).ok()
     }
 
+    /// Adds a place that explains every fault from the `first` on (by position in [`ErrorList::as_slice`]).
+    pub fn explain(&mut self, first: usize, span: Span, label: &str) {
+        for error in self.errors.iter_mut().skip(first) {
+            error.related.push((span, label.into()));
+        }
+    }
+
     /// Whether nothing is wrong.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()

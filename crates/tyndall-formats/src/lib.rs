@@ -7,6 +7,7 @@
 //! The readers of the two languages, [`pbrt`] and [`mitsuba`], give the same [`desc::SceneDesc`]. What they do not know is
 //! an error that names file, line, column, the word and what to do ([`error`]).
 
+pub mod build;
 pub mod desc;
 pub mod error;
 pub mod film;

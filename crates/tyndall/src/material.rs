@@ -2,7 +2,7 @@
 
 use crate::{
     bsdf::{Bsdf, Sides},
-    spectrum::{Lanes, Spectrum, Wavelengths},
+    spectrum::{Lanes, Spectrum, Wavelengths, glass::Glass},
 };
 
 /// A surface's material.
@@ -58,12 +58,12 @@ pub enum Metal {
 }
 
 /// A relative index of refraction.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub enum Index {
     /// The same at every wavelength [1].
     Constant(f32),
     /// Another at every wavelength: light disperses.
-    Dispersive(Spectrum),
+    Glass(Glass),
 }
 
 /// The sodium D line [nm], for which a single index is meant.
@@ -95,7 +95,7 @@ impl Material {
     /// Whether wavelengths part here, so that a path can go on with one only.
     #[inline]
     pub fn disperses(&self) -> bool {
-        matches!(self, Self::Dielectric { eta: Index::Dispersive(_), .. })
+        matches!(self, Self::Dielectric { eta: Index::Glass(_), .. })
     }
 }
 
@@ -103,8 +103,8 @@ impl Index {
     fn at(&self, wavelengths: &Wavelengths, hero: usize) -> f32 {
         match (self, wavelengths) {
             (Self::Constant(eta), _) => *eta,
-            (Self::Dispersive(eta), Wavelengths::Spectral { lambda, .. }) => eta.at(lambda[hero]),
-            (Self::Dispersive(eta), _) => eta.at(SODIUM_D),
+            (Self::Glass(glass), Wavelengths::Spectral { lambda, .. }) => glass.eta(lambda[hero]),
+            (Self::Glass(glass), _) => glass.eta(SODIUM_D),
         }
     }
 }

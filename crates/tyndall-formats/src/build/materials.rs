@@ -3,7 +3,10 @@
 use tyndall::{
     bsdf::Sides,
     material::{Index, Material, Metal},
-    spectrum::Spectrum,
+    spectrum::{
+        Spectrum,
+        glass::{GLASSES, Glass},
+    },
 };
 
 use super::{Builder, spectra::Measure};
@@ -50,14 +53,19 @@ impl Builder<'_> {
     }
 
     fn index(&mut self, eta: &Spanned<SpectrumDesc>) -> Option<Index> {
-        let spectrum = self.spectrum(eta, Measure::Coefficient)?;
         match &eta.value {
-            SpectrumDesc::Constant(v) if *v > 0.0 => Some(Index::Constant(*v as f32)),
-            SpectrumDesc::Constant(_) | SpectrumDesc::Rgb(_) => self.fail(
-                SceneError::at(eta.span, "an index of refraction is a positive number or a spectrum")
-                    .help("water has 1.33, glass 1.5"),
+            SpectrumDesc::Constant(v) if *v > 0.0 && v.is_finite() => Some(Index::Constant(*v as f32)),
+            SpectrumDesc::Named(name) => match Glass::named(name) {
+                Some(glass) => Some(Index::Glass(*glass)),
+                None => self.fail(
+                    SceneError::at(eta.span, format!("no glass is called \"{name}\""))
+                        .suggest(name, GLASSES.iter().map(|g| g.name)),
+                ),
+            },
+            _ => self.fail(
+                SceneError::at(eta.span, "an index of refraction is a positive number or the name of a glass")
+                    .help("water has 1.33, glass 1.5; \"glass-BK7\" disperses"),
             ),
-            _ => Some(Index::Dispersive(spectrum)),
         }
     }
 

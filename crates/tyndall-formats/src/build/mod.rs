@@ -28,7 +28,8 @@ use crate::{
 /// Files that cannot be read, unknown names of measured data, coefficients that are no physics.
 pub fn build(desc: &SceneDesc, sources: SourceMap, color: ColorMode) -> Result<(Scene, SourceMap), Diagnostics> {
     let mut errors = ErrorList::default();
-    match Builder { desc, errors: &mut errors }.scene(color) {
+    let scene = (Builder { desc, errors: &mut errors }).scene(color);
+    match scene {
         Some(scene) if errors.is_empty() => Ok((scene, sources)),
         _ => Err(errors.into_diagnostics(sources)),
     }

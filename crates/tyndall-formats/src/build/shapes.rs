@@ -144,7 +144,7 @@ impl<'a> Builder<'a> {
                     uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
                 }
                 let normals = if face_normals { Vec::new() } else { mesh.normals.unwrap_or_default() };
-                Some(Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs })
+                Some(Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false })
             }
             Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
         }
@@ -189,7 +189,7 @@ impl<'a> Builder<'a> {
                     return Some(Emission::Whole(first));
                 }
                 for prim in 0..mesh.indices.len() as u32 {
-                    shine(triangle(mesh.triangle(prim)));
+                    shine(triangle(mesh.triangle(prim), mesh.reversed));
                 }
                 return Some(Emission::EachPrimitive(first));
             }
@@ -204,9 +204,10 @@ impl<'a> Builder<'a> {
     }
 }
 
-fn triangle([a, b, c]: [Vec3; 3]) -> EmitterShape {
+fn triangle([a, b, c]: [Vec3; 3], reversed: bool) -> EmitterShape {
     let (e1, e2) = (b - a, c - a);
-    EmitterShape::Triangle { a, e1, e2, ng: unit_normal(e1, e2) }
+    let ng = unit_normal(e1, e2);
+    EmitterShape::Triangle { a, e1, e2, ng: if reversed { -ng } else { ng } }
 }
 
 /// In double precision: thin triangles have normals too.
@@ -226,10 +227,11 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
     let far = second.into_iter().find(|p| *p != b && *p != c)?;
     let (e1, e2) = (b - a, c - a);
     let size = (b - a).length() + (c - a).length() + a.length();
-    let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(unit_normal(e1, e2)) > 0.999;
+    let ng = unit_normal(e1, e2);
+    let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(ng) > 0.999;
     let closes = (b + e2 - far).length() <= 4.0 * f32::EPSILON * size;
     (closes && same_side && second.contains(&b) && second.contains(&c))
-        .then(|| EmitterShape::Parallelogram { a, e1, e2, ng: unit_normal(e1, e2) })
+        .then(|| EmitterShape::Parallelogram { a, e1, e2, ng: if mesh.reversed { -ng } else { ng } })
 }
 
 fn inline_mesh(mesh: &MeshDesc) -> Mesh {
@@ -238,6 +240,7 @@ fn inline_mesh(mesh: &MeshDesc) -> Mesh {
         indices: mesh.indices.clone(),
         normals: mesh.normals.iter().map(|n| Vec3::from_array(*n)).collect(),
         uvs: mesh.uvs.iter().map(|uv| Vec2::from_array(*uv)).collect(),
+        reversed: false,
     }
 }
 
@@ -253,6 +256,7 @@ fn rectangle() -> Mesh {
         indices: vec![[0, 1, 2], [2, 3, 0]],
         normals: Vec::new(),
         uvs: vec![Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 1.0)],
+        reversed: false,
     }
 }
 
@@ -268,7 +272,7 @@ fn cube() -> Mesh {
         [0, 4, 2], [2, 4, 6], // x = −1
         [1, 3, 5], [3, 7, 5], // x = +1
     ];
-    Mesh { positions, indices, normals: Vec::new(), uvs: Vec::new() }
+    Mesh { positions, indices, normals: Vec::new(), uvs: Vec::new(), reversed: false }
 }
 
 #[cfg(test)]

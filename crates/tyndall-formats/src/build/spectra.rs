@@ -1,6 +1,6 @@
 //! Spectra: numbers, colours, black bodies, samples, names and files, each by what it measures.
 
-use tyndall::spectrum::{Spectrum, glass};
+use tyndall::spectrum::Spectrum;
 
 use super::Builder;
 use crate::{
@@ -40,7 +40,10 @@ impl Builder<'_> {
                 SceneError::at(span, "a black body is a light, not a reflectance or a coefficient")
                     .help("write a number, \"rgb\" or wavelength-value pairs"),
             ),
-            SpectrumDesc::Named(name) => self.named(name, span),
+            SpectrumDesc::Named(name) => self.fail(
+                SceneError::at(span, format!("the spectrum \"{name}\" is not known yet"))
+                    .help("write a number, \"rgb\" or wavelength-value pairs"),
+            ),
             SpectrumDesc::File(path) => self.fail(
                 SceneError::at(span, format!("spectrum files are not known yet ({})", path.display()))
                     .help("write the wavelength-value pairs into the scene"),
@@ -98,17 +101,6 @@ impl Builder<'_> {
         match Spectrum::sampled(&single(lambda), &single(values)) {
             Ok(s) => Some(s),
             Err(e) => self.fail(SceneError::at(span, e.to_string())),
-        }
-    }
-
-    /// `glass-BK7` and its like.
-    fn named(&mut self, name: &str, span: Span) -> Option<Spectrum> {
-        match glass::named(name) {
-            Some(spectrum) => Some(spectrum),
-            None => self.fail(
-                SceneError::at(span, format!("the spectrum \"{name}\" is not known yet"))
-                    .suggest(name, glass::names()),
-            ),
         }
     }
 

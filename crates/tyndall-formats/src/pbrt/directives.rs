@@ -6,7 +6,8 @@ use std::rc::Rc;
 use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::params::{Param, Params, quote};
+use super::param::Param;
+use super::params::{Params, quote};
 use super::parser::Statement;
 use super::state::{Block, look_at};
 use crate::desc::{GroupDesc, GroupId, Ignored, InstanceDesc, MediumId, MediumInterface};

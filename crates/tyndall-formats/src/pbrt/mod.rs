@@ -18,6 +18,7 @@ mod lights;
 mod materials;
 mod media;
 mod names;
+mod param;
 mod params;
 mod parser;
 mod settings;
@@ -154,7 +155,9 @@ impl Reader {
             let message = format!("includes are nested more than {MAX_INCLUDE_DEPTH} deep");
             self.errors.push(SceneError::at(span, message).help("does a file include itself by another name?"));
         } else if let Some(file) = self.errors.ok(self.sources.read(&path, Some(span))) {
+            let before = self.errors.as_slice().len();
             self.run(file, path, Some(span));
+            self.errors.explain(before, span, "included here");
         }
     }
 

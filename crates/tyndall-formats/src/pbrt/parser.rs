@@ -12,7 +12,7 @@
 use std::borrow::Cow;
 
 use super::lexer::{Lexer, Token, TokenKind, shorten};
-use super::params::{Param, ParamType, Values};
+use super::param::{Param, ParamType, Values};
 use crate::error::{ErrorList, SceneError};
 use crate::source::{FileId, Span, Spanned};
 
@@ -40,7 +40,7 @@ enum Grammar {
 }
 
 /// Every directive of the language with what follows it.
-const DIRECTIVES: [(&str, Grammar); 39] = [
+const DIRECTIVES: [(&str, Grammar); 40] = [
     ("Accelerator", Grammar::Entity),
     ("ActiveTransform", Grammar::Word),
     ("AreaLightSource", Grammar::Entity),
@@ -79,6 +79,7 @@ const DIRECTIVES: [(&str, Grammar); 39] = [
     ("TransformBegin", Grammar::Nothing),
     ("TransformEnd", Grammar::Nothing),
     ("TransformTimes", Grammar::Numbers(2)),
+    ("Translate", Grammar::Numbers(3)),
     ("WorldBegin", Grammar::Nothing),
 ];
 
@@ -128,10 +129,12 @@ impl<'a> Parser<'a> {
                 self.skip_to_word(errors);
                 continue;
             };
-            match self.arguments(word, token.span, grammar, errors) {
-                Ok(statement) => return Some(statement),
-                Err(Broken) => self.skip_to_word(errors),
+            if let Ok(statement) = self.arguments(word, token.span, grammar, errors) {
+                return Some(statement);
             }
+            // The word at fault has been shown: it is no directive on top.
+            self.take_if(errors, |k| matches!(k, TokenKind::Word(word) if find(word).is_none()));
+            self.skip_to_word(errors);
         }
     }
 

@@ -1,7 +1,8 @@
 //! `Shape`.
 
 use super::Reader;
-use super::params::{ParamType, Params};
+use super::param::ParamType;
+use super::params::Params;
 use super::parser::Statement;
 use crate::desc::{MaterialDesc, MaterialId, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 use crate::error::SceneError;
@@ -120,12 +121,14 @@ fn corners(p: &mut Params, least: usize) -> Option<Corners> {
     if count < least {
         let message = format!("a mesh needs \"point3 P\" with at least {least} points, and this one has {count}");
         p.error(SceneError::at(positions.span, message));
+        p.skip("indices");
         return None;
     }
     for (name, found, span) in [("N", normals.value.len(), normals.span), ("uv", uvs.value.len(), uvs.span)] {
         if found != 0 && found != count {
             let message = format!("\"{name}\" has {found} values for {count} points");
             p.error(SceneError::at(span, message).help(format!("give one \"{name}\" for each point")));
+            p.skip("indices");
             return None;
         }
     }

@@ -5,7 +5,8 @@ use std::rc::Rc;
 
 use glam::{DMat4, DVec3};
 
-use super::params::{Param, quote};
+use super::param::Param;
+use super::params::quote;
 use crate::desc::{AreaLightDesc, MaterialId, MediumInterface};
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};

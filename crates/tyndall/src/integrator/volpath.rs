@@ -164,6 +164,10 @@ impl Path {
         if vertex.can_use_light_samples() {
             self.sample_light(scene, vertex, &reference, sink, tally);
         }
+        if !self.weights.throughput().is_finite() {
+            sink.add(self.weights.beta, &self.history); // the film counts and locates it
+            return Status::Done;
+        }
         if !self.survives(settings.roulette) {
             return Status::Done;
         }

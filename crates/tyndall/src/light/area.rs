@@ -8,7 +8,7 @@ use std::f32::consts::PI;
 use super::{LightSample, Reference, Target};
 use crate::{
     math::{Bounds, Frame, Vec2, Vec3, rounding::gamma},
-    sampling::warp,
+    sampling::{spherical_rectangle::SphericalRectangle, warp},
     spectrum::{Lanes, Spectrum, Wavelengths},
 };
 
@@ -80,9 +80,6 @@ struct Point {
     error: Vec3,
 }
 
-/// Rectangles subtending less than this are sampled by area: the spherical formulas lose their digits. [sr]
-const LEAST_SOLID_ANGLE: f32 = 1e-3;
-
 impl EmitterShape {
     /// Area [length²].
     pub fn area(&self) -> f32 {
@@ -126,8 +123,8 @@ impl EmitterShape {
     fn sample_area(&self, u: Vec2) -> Point {
         match *self {
             Self::Triangle { a, e1, e2, ng } => {
-                let b = warp::uniform_triangle(u);
-                flat(a, e1 * b.x, e2 * b.y, ng)
+                let [_, b1, b2] = warp::triangle(u);
+                flat(a, e1 * b1, e2 * b2, ng)
             }
             Self::Parallelogram { a, e1, e2, ng } => flat(a, e1 * u.x, e2 * u.y, ng),
             Self::Sphere { centre, radius, inward } => {
@@ -195,12 +192,9 @@ impl AreaLight {
                 }
             }
             EmitterShape::Parallelogram { a, e1, e2, ng } if is_rectangle(e1, e2) => {
-                if let Some(rectangle) = warp::SphericalRectangle::new(a, e1, e2, from.p)
-                    && rectangle.solid_angle() > LEAST_SOLID_ANGLE
-                {
-                    let p = rectangle.sample(u);
-                    let error = (a.abs() + e1.abs() + e2.abs() + from.p.abs()) * gamma(12);
-                    return Some((Point { p, ng, error }, 1.0 / rectangle.solid_angle()));
+                if let Some(rectangle) = SphericalRectangle::new(a, e1, e2, from.p) {
+                    let uv = rectangle.sample(u);
+                    return Some((flat(a, e1 * uv.x, e2 * uv.y, ng), rectangle.pdf()));
                 }
             }
             _ => {}
@@ -220,10 +214,8 @@ impl AreaLight {
                 }
             }
             EmitterShape::Parallelogram { a, e1, e2, .. } if is_rectangle(e1, e2) => {
-                if let Some(rectangle) = warp::SphericalRectangle::new(a, e1, e2, from.p)
-                    && rectangle.solid_angle() > LEAST_SOLID_ANGLE
-                {
-                    return 1.0 / rectangle.solid_angle();
+                if let Some(rectangle) = SphericalRectangle::new(a, e1, e2, from.p) {
+                    return rectangle.pdf();
                 }
             }
             _ => {}

@@ -23,7 +23,7 @@ impl LightTable {
     pub fn new(lights: Vec<Light>, middle: crate::math::Vec3) -> Self {
         let environments =
             (0..lights.len()).filter(|i| lights[*i].is_environment()).map(|i| LightId(i as u32)).collect();
-        let many = (lights.len() > WEIGHED).then(|| {
+        let many = (lights.len() > WEIGHED).then_some(()).and_then(|()| {
             let weights: Vec<f32> = lights.iter().map(|l| l.importance(middle).min(1e30)).collect();
             let mean = weights.iter().sum::<f32>() / weights.len() as f32;
             // A light that the middle cannot see may still shine elsewhere: every one keeps a share.

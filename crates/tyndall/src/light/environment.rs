@@ -104,7 +104,7 @@ impl EnvironmentMap {
         let weights: Vec<f32> = pixels.iter().enumerate().map(|(i, p)| luminance(p) * share(i)).collect();
         let total_share: f64 = (0..weights.len()).map(|i| f64::from(share(i))).sum();
         let mean_luminance = (weights.iter().map(|w| f64::from(*w)).sum::<f64>() / total_share) as f32;
-        let distribution = Piecewise2d::new(width as usize, height as usize, &weights);
+        let distribution = Piecewise2d::new(&weights, width as usize).ok_or(EnvironmentError::Black)?;
         let primaries = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Spectrum::illuminant_rgb);
         Ok(Self { to_world, projection, width, height, pixels, primaries, distribution, mean_luminance })
     }
@@ -180,6 +180,9 @@ pub enum EnvironmentError {
     /// No pixels.
     #[error("the environment image has no pixels")]
     Empty,
+    /// No light anywhere.
+    #[error("the environment image is black: leave the light out")]
+    Black,
     /// A value that is no radiance.
     #[error("the environment image has a negative or non-finite value at column {column}, row {row}")]
     BadPixel {

@@ -4,6 +4,8 @@ pub mod discrete;
 pub mod piecewise2d;
 pub mod rng;
 pub mod sampler;
+pub mod spherical_rectangle;
+pub mod spherical_triangle;
 pub mod warp;
 
 pub use rng::Rng;

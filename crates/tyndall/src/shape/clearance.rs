@@ -193,17 +193,19 @@ fn open(stack: &mut Vec<(f32, Child)>, node: &Node, squares: &[f32; 8], nearest:
 /// Lower bounds on the squared distances to the eight boxes.
 #[inline(always)]
 fn squares_to_boxes<S: Simd>(simd: S, node: &Node, p: Vec3) -> [f32; 8] {
-    let zero = f32x8::splat(simd, 0.0);
-    let beside = |axis: usize| {
-        // In local space the point itself is rounded.
-        let slack = f32x8::splat(simd, p[axis].abs() * f32::EPSILON);
-        let at = f32x8::splat(simd, p[axis]);
-        let below = f32x8::simd_from(simd, node.planes[2 * axis]) - at;
-        let above = at - f32x8::simd_from(simd, node.planes[2 * axis + 1]);
-        (below.max(above) - slack).max(zero)
-    };
-    let (x, y, z) = (beside(0), beside(1), beside(2));
+    let (x, y, z) = (beside(simd, node, p, 0), beside(simd, node, p, 1), beside(simd, node, p, 2));
     ((x * x + y * y + z * z) * f32x8::splat(simd, 1.0 - 8.0 * f32::EPSILON)).into()
+}
+
+/// How far `p` is beside the eight boxes along an axis.
+#[inline(always)]
+fn beside<S: Simd>(simd: S, node: &Node, p: Vec3, axis: usize) -> f32x8<S> {
+    // In local space the point itself is rounded.
+    let slack = f32x8::splat(simd, p[axis].abs() * f32::EPSILON);
+    let at = f32x8::splat(simd, p[axis]);
+    let below = f32x8::simd_from(simd, node.planes[2 * axis]) - at;
+    let above = at - f32x8::simd_from(simd, node.planes[2 * axis + 1]);
+    (below.max(above) - slack).max(f32x8::splat(simd, 0.0))
 }
 
 /// Squared distance to a triangle (after Ericson 2005, § 5.1.5), exact enough in double precision for triangles as

@@ -129,7 +129,7 @@ impl World {
             [0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
             [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5],
         ];
-        let mesh = Mesh { positions: (0..8).map(corner).collect(), indices, normals: Vec::new(), uvs: Vec::new() };
+        let mesh = Mesh { positions: (0..8).map(corner).collect(), indices, normals: Vec::new(), uvs: Vec::new(), reversed: false };
         self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap()
     }
 

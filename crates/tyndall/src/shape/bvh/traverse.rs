@@ -55,15 +55,22 @@ impl Slabs {
     /// The boxes that the ray meets before `t_max`, and where it enters them.
     #[inline(always)]
     fn meet<S: Simd>(&self, simd: S, node: &Node, t_max: f32) -> (u32, [f32; 8]) {
-        let distance = |plane: usize, axis: usize, inv: f32| {
-            (f32x8::simd_from(simd, node.planes[plane]) - f32x8::splat(simd, self.origin[axis]))
-                * f32x8::splat(simd, inv)
-        };
-        let near = |axis: usize| distance(self.side[axis], axis, self.near[axis]);
-        let far = |axis: usize| distance(self.side[axis] ^ 1, axis, self.far[axis]);
-        let enter = near(0).max(near(1)).max(near(2)).max(f32x8::splat(simd, 0.0));
-        let leave = far(0).min(far(1)).min(far(2)).min(f32x8::splat(simd, t_max));
+        let [x, y, z] = self.side;
+        let enter = self.distance(simd, &node.planes[x], 0, self.near.x);
+        let enter = enter.max(self.distance(simd, &node.planes[y], 1, self.near.y));
+        let enter = enter.max(self.distance(simd, &node.planes[z], 2, self.near.z));
+        let enter = enter.max(f32x8::splat(simd, 0.0));
+        let leave = self.distance(simd, &node.planes[x ^ 1], 0, self.far.x);
+        let leave = leave.min(self.distance(simd, &node.planes[y ^ 1], 1, self.far.y));
+        let leave = leave.min(self.distance(simd, &node.planes[z ^ 1], 2, self.far.z));
+        let leave = leave.min(f32x8::splat(simd, t_max));
         (enter.simd_le(leave).to_bitmask() as u32, enter.into())
+    }
+
+    // A function, not a closure: closures are not always inlined, and then lose the instruction set.
+    #[inline(always)]
+    fn distance<S: Simd>(&self, simd: S, plane: &[f32; 8], axis: usize, inv: f32) -> f32x8<S> {
+        (f32x8::simd_from(simd, *plane) - f32x8::splat(simd, self.origin[axis])) * f32x8::splat(simd, inv)
     }
 }
 

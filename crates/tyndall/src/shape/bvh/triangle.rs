@@ -50,19 +50,9 @@ impl Shear {
     /// those that [`Self::resolve`] will refuse.
     #[inline(always)]
     pub(super) fn candidates<S: Simd>(&self, simd: S, packet: &Packet, t_max: f32) -> u32 {
-        let [kx, ky, kz] = self.axes;
-        let (sx, sy) = (f32x8::splat(simd, self.by.x), f32x8::splat(simd, self.by.y));
-        let (ox, oy) = (f32x8::splat(simd, self.origin[kx]), f32x8::splat(simd, self.origin[ky]));
-        let (oz, sz) = (f32x8::splat(simd, self.origin[kz]), f32x8::splat(simd, self.by.z));
-        let sheared = |v: &[[f32; 8]; 3]| {
-            let z = f32x8::simd_from(simd, v[kz]) - oz;
-            let x = (f32x8::simd_from(simd, v[kx]) - ox) - sx * z;
-            let y = (f32x8::simd_from(simd, v[ky]) - oy) - sy * z;
-            (x, y, z * sz)
-        };
-        let (ax, ay, az) = sheared(&packet.vertex[0]);
-        let (bx, by, bz) = sheared(&packet.vertex[1]);
-        let (cx, cy, cz) = sheared(&packet.vertex[2]);
+        let (ax, ay, az) = self.sheared_lanes(simd, &packet.vertex[0]);
+        let (bx, by, bz) = self.sheared_lanes(simd, &packet.vertex[1]);
+        let (cx, cy, cz) = self.sheared_lanes(simd, &packet.vertex[2]);
         let u = cx * by - cy * bx;
         let v = ax * cy - ay * cx;
         let w = bx * ay - by * ax;
@@ -70,6 +60,18 @@ impl Shear {
         let same_sign = u.min(v).min(w).simd_ge(zero) | u.max(v).max(w).simd_le(zero);
         let in_range = az.max(bz).max(cz).simd_gt(zero) & az.min(bz).min(cz).simd_lt(f32x8::splat(simd, t_max));
         (same_sign & in_range).to_bitmask() as u32
+    }
+
+    /// Sheared x and y, and the depth along the ray.
+    #[inline(always)]
+    fn sheared_lanes<S: Simd>(&self, simd: S, v: &[[f32; 8]; 3]) -> (f32x8<S>, f32x8<S>, f32x8<S>) {
+        let [kx, ky, kz] = self.axes;
+        let z = f32x8::simd_from(simd, v[kz]) - f32x8::splat(simd, self.origin[kz]);
+        let x =
+            (f32x8::simd_from(simd, v[kx]) - f32x8::splat(simd, self.origin[kx])) - f32x8::splat(simd, self.by.x) * z;
+        let y =
+            (f32x8::simd_from(simd, v[ky]) - f32x8::splat(simd, self.origin[ky])) - f32x8::splat(simd, self.by.y) * z;
+        (x, y, z * f32x8::splat(simd, self.by.z))
     }
 
     /// The hit on one triangle, if there is one: the same edge functions without error, and the distance.

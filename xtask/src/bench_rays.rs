@@ -1,0 +1,167 @@
+//! `cargo xtask bench rays`: our rays beside Embree's, on one thread.
+//!
+//! A bumpy ball of 101,568 triangles and 131,072 rays of each kind, seeded. The two engines take turns; what is
+//! printed is the median of 11 rates and the median of the 11 ratios, so that a busy machine disturbs both alike.
+//! Embree is run with its robust flag. It is looked for in `target/venv` (`python3 -m venv target/venv &&
+//! target/venv/bin/pip install embreex`); without it, only our rates are printed.
+
+use std::{
+    hint::black_box,
+    path::{Path, PathBuf},
+    process::Command,
+    time::Instant,
+};
+
+use anyhow::{Result, ensure};
+use tyndall::{
+    math::{Ray, Transform, Vec3},
+    shape::{Geometry, GeometryBuilder, Mesh},
+};
+
+use self::meshes::{Random, at_seam, displaced_sphere};
+use crate::embree;
+
+#[allow(dead_code, reason = "shared with the tests of the library, which need more kinds")]
+#[path = "../../crates/tyndall/tests/geometry/meshes.rs"]
+mod meshes;
+
+const RAYS: usize = 131_072;
+const ROUNDS: usize = 11;
+
+struct Case {
+    name: &'static str,
+    rays: Vec<(Ray, f32)>,
+}
+
+/// Runs the comparison. A debug build starts itself anew as a release build.
+pub(crate) fn run() -> Result<()> {
+    if cfg!(debug_assertions) {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let status = Command::new(cargo)
+            .args(["run", "--release", "--quiet", "--package", "xtask", "--", "bench", "rays"])
+            .status()?;
+        ensure!(status.success(), "the release build failed");
+        return Ok(());
+    }
+    let mesh = displaced_sphere(92, 0.05);
+    let start = Instant::now();
+    let mut builder = GeometryBuilder::new();
+    builder.add_mesh(mesh.clone(), &Transform::IDENTITY, false)?;
+    let ours = builder.build()?;
+    println!("{} triangles, built in {:.3} s", mesh.indices.len(), start.elapsed().as_secs_f64());
+    let theirs = match find_embree() {
+        Some(path) => Some(embree::Scene::new(&path, &mesh)?),
+        None => {
+            println!("no Embree in target/venv: only our rays");
+            None
+        }
+    };
+    println!("{:<22} {:>10} {:>10} {:>7}", "[Mrays/s]", "tyndall", "Embree", "ratio");
+    for case in cases(&mesh) {
+        compare(&case, &ours, theirs.as_ref());
+    }
+    clearance(&ours);
+    leaks(&mesh, &ours, theirs.as_ref());
+    Ok(())
+}
+
+fn find_embree() -> Option<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
+    let python = std::fs::read_dir(root.join("target/venv/lib")).ok()?.next()?.ok()?.path();
+    let libraries = std::fs::read_dir(python.join("site-packages/embreex.libs")).ok()?;
+    libraries.flatten().map(|e| e.path()).find(|p| p.to_string_lossy().contains("libembree4"))
+}
+
+fn cases(mesh: &Mesh) -> Vec<Case> {
+    let random = &mut Random(1);
+    let mut case = |name, ray: &mut dyn FnMut(&mut Random) -> (Ray, f32)| Case {
+        name,
+        rays: (0..RAYS).map(|_| ray(random)).collect(),
+    };
+    let flight = |random: &mut Random, mean: f32| -mean * (1.0 - random.unit()).ln();
+    vec![
+        case("inside, unbounded", &mut |r| (Ray::new(r.in_ball() * 0.9, r.dir()), f32::INFINITY)),
+        case("outside, incoherent", &mut |r| {
+            let origin = r.dir() * 3.0;
+            (Ray::new(origin, (r.in_ball() * 1.2 - origin).normalize()), f32::INFINITY)
+        }),
+        case("short flights", &mut |r| (Ray::new(r.in_ball() * 0.9, r.dir()), flight(r, 0.05))),
+        case("just under the skin", &mut |r| {
+            let [a, b, c] = mesh.triangle(r.below(mesh.indices.len()) as u32);
+            (Ray::new((a + b + c) / 3.0 * 0.999, r.dir()), flight(r, 0.05))
+        }),
+    ]
+}
+
+/// Time for all rays of a case [s], and how many of them hit.
+fn time(case: &Case, intersect: impl Fn(&Ray, f32) -> Option<f32>) -> (f64, usize) {
+    let start = Instant::now();
+    let hits = case.rays.iter().filter(|(ray, t_max)| black_box(intersect(ray, *t_max)).is_some()).count();
+    (start.elapsed().as_secs_f64(), hits)
+}
+
+fn compare(case: &Case, ours: &Geometry, theirs: Option<&embree::Scene>) {
+    let ours = |ray: &Ray, t_max| ours.intersect(ray, t_max).map(|hit| hit.t);
+    let rate = |seconds: &[f64]| case.rays.len() as f64 / median(seconds) * 1e-6;
+    let (mut a, mut b, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut our_hits, mut their_hits) = (0, 0);
+    for _ in 0..ROUNDS {
+        let seconds;
+        (seconds, our_hits) = time(case, ours);
+        a.push(seconds);
+        if let Some(theirs) = theirs {
+            let seconds;
+            (seconds, their_hits) = time(case, |ray, t_max| theirs.intersect(ray, t_max));
+            b.push(seconds);
+            ratios.push(seconds / a[a.len() - 1]);
+        }
+    }
+    if theirs.is_some() {
+        let (ours, theirs, ratio) = (rate(&a), rate(&b), median(&ratios));
+        println!("{:<22} {ours:>10.2} {theirs:>10.2} {ratio:>7.2}   hits {our_hits} {their_hits}", case.name);
+    } else {
+        println!("{:<22} {:>10.2}   hits {our_hits}", case.name, rate(&a));
+    }
+}
+
+fn clearance(ours: &Geometry) {
+    let random = &mut Random(2);
+    for (name, within) in [("clearance, anywhere", 0.0), ("clearance, at skin", 0.95)] {
+        let mut points = Vec::new();
+        while points.len() < RAYS {
+            let p = random.in_ball();
+            if p.length() >= within {
+                points.push(p);
+            }
+        }
+        for cap in [0.02, 0.1] {
+            let mut seconds = Vec::new();
+            for _ in 0..5 {
+                let start = Instant::now();
+                black_box(points.iter().map(|&p| ours.clearance(p, cap)).sum::<f32>());
+                seconds.push(start.elapsed().as_secs_f64());
+            }
+            println!("{name:<22} {:>10.2}   cap {cap}", points.len() as f64 / median(&seconds) * 1e-6);
+        }
+    }
+}
+
+fn leaks(mesh: &Mesh, ours: &Geometry, theirs: Option<&embree::Scene>) {
+    for (name, edge) in [("vertices", false), ("edges", true)] {
+        let random = &mut Random(3);
+        let (mut our_leaks, mut their_leaks) = (0, 0);
+        for _ in 0..RAYS {
+            let origin: Vec3 = random.in_ball() * 0.8;
+            let ray = at_seam(mesh, origin, edge, random);
+            our_leaks += usize::from(ours.intersect(&ray, f32::INFINITY).is_none());
+            their_leaks += theirs.map_or(0, |e| usize::from(e.intersect(&ray, f32::INFINITY).is_none()));
+        }
+        println!("leaks at {name:<13} {our_leaks:>10} {their_leaks:>10}");
+    }
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
+}
