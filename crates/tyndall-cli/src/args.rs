@@ -247,7 +247,7 @@ pub(crate) enum CurveName {
 }
 
 /// The word of the command line for a value.
-pub(crate) fn word(value: impl ValueEnum) -> String {
+pub(crate) fn word(value: &impl ValueEnum) -> String {
     value.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Words are set in Noto Sans Mono, which is compiled in, so that they look the same everywhere.
 
+#![allow(clippy::cast_possible_wrap, reason = "a page is far smaller than 2³¹ pixels")]
+
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 use plotters::{
     prelude::DrawingBackend,
@@ -137,14 +139,14 @@ impl DrawingBackend for &mut Canvas {
         };
         let (color, (r, g, b)) = (style.color(), style.color().rgb);
         letters(text, size, |dx, dy, coverage| {
-            let (dx, dy) = turned(style.transform(), left + dx, top + dy);
+            let (dx, dy) = turned(&style.transform(), left + dx, top + dy);
             self.mix(at.0 + dx, at.1 + dy, [r, g, b], coverage * color.alpha);
         });
         Ok(())
     }
 }
 
-fn turned(transform: FontTransform, x: i32, y: i32) -> (i32, i32) {
+fn turned(transform: &FontTransform, x: i32, y: i32) -> (i32, i32) {
     match transform {
         FontTransform::None => (x, y),
         FontTransform::Rotate90 => (-y, x),

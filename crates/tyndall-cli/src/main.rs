@@ -5,11 +5,16 @@ mod args;
 mod canvas;
 mod commands;
 mod false_color;
+mod integrators;
 mod interrupt;
+mod load;
 mod outputs;
+mod progress;
+mod report;
 mod statistics;
 mod tev;
 mod values;
+mod watch;
 
 use std::{io::IsTerminal, process::ExitCode};
 
@@ -23,8 +28,10 @@ const FAILED: u8 = 2;
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
+        Command::Render(options) => commands::render::run(&options),
         Command::Compare(options) => commands::compare::run(&options),
-        _ => Ok(ExitCode::SUCCESS),
+        Command::Lecture(options) => commands::lecture::run(&options),
+        Command::Info(options) => commands::info::run(&options),
     };
     outcome.unwrap_or_else(|error| {
         show(&error);

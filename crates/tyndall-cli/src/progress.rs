@@ -115,7 +115,8 @@ impl Progress {
 }
 
 fn bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style =
+        ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(STEPS).with_style(style)
 }
 
@@ -154,7 +155,7 @@ mod tests {
 
     #[test]
     fn the_nearer_limit_tells_how_much_is_done() {
-        let hour = Some(Duration::from_secs(3600));
+        let hour = Some(Duration::from_hours(1));
         let both = Progress::new(100, hour, true, true);
         both.tell(render::Progress { samples: 300, total: 400 });
         assert!((both.fraction(400) - 0.75).abs() < 1e-9);

@@ -22,6 +22,9 @@ const SAVE_SHARE: u32 = 20;
 /// Between two images for the viewer, at least.
 const SHOW_EVERY: Duration = Duration::from_millis(250);
 
+/// Saves a film.
+type Save<'a> = Box<dyn Fn(&Film) -> anyhow::Result<()> + Send + 'a>;
+
 /// Watches one render.
 pub(crate) struct Watch<'a> {
     pub(crate) progress: Progress,
@@ -33,7 +36,7 @@ pub(crate) struct Watch<'a> {
 
 /// What becomes of the image so far.
 struct Image<'a> {
-    save: Box<dyn Fn(&Film) -> anyhow::Result<()> + Send + 'a>,
+    save: Save<'a>,
     next_save: Instant,
     tev: Option<Tev>,
     next_show: Instant,

@@ -100,7 +100,9 @@ fn help_teaches_by_example() {
     ] {
         let output = desk.tyndall(arguments);
         assert!(output.status.success());
-        words.iter().for_each(|word| assert!(out(&output).contains(word), "{arguments}: no {word}"));
+        for word in words {
+            assert!(out(&output).contains(word), "{arguments}: no {word}");
+        }
     }
 }
 

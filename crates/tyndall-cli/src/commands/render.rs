@@ -1,9 +1,6 @@
 //! `tyndall render SCENE`.
 
-use std::{
-    process::ExitCode,
-    time::Instant,
-};
+use std::{process::ExitCode, time::Instant};
 
 use anyhow::{Context, ensure};
 use cpu_time::ProcessTime;
@@ -75,7 +72,7 @@ impl Job<'_> {
     fn render(&self) -> anyhow::Result<Rendering> {
         let Self { options, loaded, settings, .. } = self;
         let max_depth = options.max_depth.or(loaded.desc.integrator.max_depth.map(|depth| depth.value));
-        let integrator = integrator(options.integrator, max_depth);
+        let integrator = integrator(options.integrator, max_depth)?;
         let camera = &loaded.scene.camera;
         let crop = settings.crop.unwrap_or(Crop::full(camera.width, camera.height));
         let pixels = u64::from(crop.width()) * u64::from(crop.height());
@@ -105,9 +102,9 @@ impl Job<'_> {
             version: env!("CARGO_PKG_VERSION").into(),
             scene: options.scene.display().to_string(),
             scene_hash: loaded.hash.clone(),
-            integrator: word(options.integrator),
-            color: word(options.color),
-            sampler: word(options.sampler),
+            integrator: word(&options.integrator),
+            color: word(&options.color),
+            sampler: word(&options.sampler),
             spp: if settings.spp == u32::MAX { 0 } else { settings.spp },
             samples_per_pixel: samples_per_pixel(film),
             seed: settings.seed,

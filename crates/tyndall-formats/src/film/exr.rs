@@ -36,7 +36,7 @@ pub fn write(path: &Path, image: &Image) -> Result<(), FilmError> {
     let layer = Layer::new(
         Vec2(crop.width() as usize, crop.height() as usize),
         LayerAttributes {
-            layer_position: Vec2(crop.min.0 as i32, crop.min.1 as i32),
+            layer_position: Vec2(crop.min.0.cast_signed(), crop.min.1.cast_signed()),
             software_name: image.metadata.as_ref().map(|m| utf8(&format!("tyndall {}", m.version))),
             other: image.metadata.as_ref().map(text_attributes).unwrap_or_default(),
             ..LayerAttributes::default()

@@ -14,7 +14,7 @@
 //!
 //! | parameter | meaning | range |
 //! |---|---|---|
-//! | `alpha_x`, `alpha_y` | roughness along the tangents: root mean square slope, scaled \[1\] | about 0.001 to 1 |
+//! | `alpha_x`, `alpha_y` | roughness along the tangents: the scale of the slopes \[1\] | about 0.001 to 1 |
 //!
 //! Source: Trowbridge and Reitz 1975; Walter et al. 2007; Heitz 2014, "Understanding the masking-shadowing function";
 //! sampling: Dupuy and Benyoub 2023, "Sampling visible GGX normals with spherical caps".

@@ -89,7 +89,7 @@ impl<'a> Bench<'a> {
     pub(crate) fn reference(&self) -> anyhow::Result<Reference> {
         let settings = self.settings(self.options.reference_spp, REFERENCE_SEED);
         let stopwatch = self.stopwatch("reference", None, None);
-        let film = self.render(IntegratorName::Volpath, &settings, &stopwatch);
+        let film = self.render(IntegratorName::Volpath, &settings, &stopwatch)?;
         let image = self.image(&film, IntegratorName::Volpath, &settings, stopwatch.seconds());
         let mse = image.standard_error.as_deref().map_or(0.0, |se| mean(se, |e| e * e));
         let mean = mean(&image.mean, |v| v);
@@ -127,18 +127,18 @@ impl<'a> Bench<'a> {
         reference: &Reference,
     ) -> anyhow::Result<Run> {
         let stopwatch = self.stopwatch(label, limit, Some(reference));
-        let film = self.render(name, settings, &stopwatch);
+        let film = self.render(name, settings, &stopwatch)?;
         let seconds = stopwatch.seconds();
         let image = self.image(&film, name, settings, seconds);
         let course = stopwatch.course();
         Ok(Run { mse: squared_error(&film, reference), spp: samples_per_pixel(&film), image, seconds, course })
     }
 
-    fn render(&self, name: IntegratorName, settings: &Settings, stopwatch: &Stopwatch) -> Film {
-        let integrator = integrator(name, None);
+    fn render(&self, name: IntegratorName, settings: &Settings, stopwatch: &Stopwatch) -> anyhow::Result<Film> {
+        let integrator = integrator(name, None)?;
         let rendering = self.pool.install(|| render(&self.loaded.scene, integrator.as_ref(), settings, stopwatch));
         stopwatch.progress.finish();
-        rendering.film
+        Ok(rendering.film)
     }
 
     /// Independent samples, so that the variance of the mean is that of a sample over their number.
@@ -164,7 +164,7 @@ impl<'a> Bench<'a> {
             version: env!("CARGO_PKG_VERSION").into(),
             scene: format!("lecture/{}.pbrt", self.topic),
             scene_hash: self.loaded.hash.clone(),
-            integrator: word(name),
+            integrator: word(&name),
             color: "rgb".into(),
             sampler: "independent".into(),
             spp: if settings.spp == u32::MAX { 0 } else { settings.spp },

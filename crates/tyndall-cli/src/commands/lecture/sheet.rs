@@ -4,11 +4,14 @@ use std::path::Path;
 
 use tyndall_formats::film::{FilmError, Image, png};
 
-use super::{Chapter, Run, TONE, measure::Reference};
+use super::{Chapter, Run, TONE, Version, measure::Reference};
 use crate::{
     canvas::{Canvas, Type},
     progress::time,
 };
+
+/// One of the two renders of an estimator.
+type Choose = fn(&Version) -> &Run;
 
 const PAPER: [u8; 3] = [255; 3];
 const INK: [u8; 3] = [20; 3];
@@ -29,8 +32,8 @@ pub(crate) fn write(path: &Path, chapters: &[Chapter]) -> Result<(), FilmError> 
 
     for (i, chapter) in chapters.iter().enumerate() {
         let top = GAP + 2 * i as u32 * row;
-        let runs: [(&str, fn(&super::Version) -> &Run); 2] =
-            [("equal samples", |v| &v.equal_samples), ("equal time", |v| &v.equal_time)];
+        let runs: [(&str, Choose); 2] =
+            [("equal samples", |version| &version.equal_samples), ("equal time", |version| &version.equal_time)];
         for (k, (title, run)) in runs.into_iter().enumerate() {
             let top = top + k as u32 * row;
             page.text(GAP, top, &format!("{}, {title}", chapter.name), Type::Large, INK);
@@ -39,7 +42,12 @@ pub(crate) fn write(path: &Path, chapters: &[Chapter]) -> Result<(), FilmError> 
                 show(&mut page, at, &run(version).image, &caption(version.label, run(version), &chapter.reference));
             }
             let at = (GAP + chapter.versions.len() as u32 * (w + GAP), top + HEADING);
-            show(&mut page, at, &chapter.reference.image, &["reference (volpath)".into(), spp(&chapter.reference.image)]);
+            show(
+                &mut page,
+                at,
+                &chapter.reference.image,
+                &["reference (volpath)".into(), spp(&chapter.reference.image)],
+            );
         }
     }
     png::write_rgb8(path, [page.width, page.height], &page.pixels, &[])

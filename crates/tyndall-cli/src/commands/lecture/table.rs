@@ -55,8 +55,16 @@ fn rows_of(chapter: &Chapter) -> impl Iterator<Item = Row> {
     })
 }
 
-const HEADS: [&str; 8] =
-    ["estimator", "variance", "µs/sample", "efficiency", "gain of the step", "gain in all", "error, same spp", "error, same time"];
+const HEADS: [&str; 8] = [
+    "estimator",
+    "variance",
+    "µs/sample",
+    "efficiency",
+    "gain of the step",
+    "gain in all",
+    "error, same spp",
+    "error, same time",
+];
 
 fn cells(row: &Row) -> [String; 8] {
     [
