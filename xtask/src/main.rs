@@ -1,2 +1,65 @@
-//! Repository chores.
-fn main() {}
+//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `bench`, `full`.
+#![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
+
+mod bench;
+mod bench_rays;
+mod ci;
+mod docs;
+mod embree;
+mod peers;
+mod shell;
+mod tidy;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// The chores of this repository.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Debug, Subcommand)]
+enum Chore {
+    /// Everything that must hold for every commit: format, lints, docs, tests, tidy, smoke test
+    Ci,
+    /// The rules of STYLE.md that a program can check
+    Tidy,
+    /// tyndall against Mitsuba 3, and RGB against spectral colour: agreement and efficiency
+    Peers(peers::Options),
+    /// The figures that tyndall promises, measured on this machine
+    Bench {
+        #[command(subcommand)]
+        bench: Option<bench::Bench>,
+    },
+    /// All that is known to be worth checking: ci, the slow tests, peers, bench
+    Full,
+}
+
+fn main() -> ExitCode {
+    match run(Cli::parse().chore) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("\nerror: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(chore: Chore) -> anyhow::Result<()> {
+    match chore {
+        Chore::Ci => ci::run(),
+        Chore::Tidy => tidy::run(),
+        Chore::Peers(options) => peers::run(&options),
+        Chore::Bench { bench } => bench::run(bench),
+        Chore::Full => {
+            ci::run()?;
+            ci::run_slow_tests()?;
+            peers::run(&peers::Options::default())?;
+            bench::run(None)
+        }
+    }
+}

@@ -1,14 +1,24 @@
 //! A renderer for light that scatters many times.
 //!
 //! The library takes no files, prints nothing and reads no clock: `tyndall-formats` turns what a user wrote into a
-//! [`scene`], this crate turns a scene into an image with its standard error.
+//! [`scene::Scene`], this crate turns a scene into an image with its standard error ([`render::render`]).
 //!
 //! The floors, from the ground up: [`math`] and [`sampling`], [`spectrum`], the models ([`phase`], [`medium`],
-//! [`bsdf`], [`light`], [`shape`], [`camera`]), then paths and the integrators.
+//! [`bsdf`], [`light`], [`shape`], [`camera`]), then [`path`] and [`integrator`].
 
 pub mod bsdf;
+pub mod camera;
+pub mod film;
+pub mod integrator;
+pub mod light;
+pub mod material;
 pub mod math;
+pub mod medium;
+pub mod path;
 pub mod phase;
+pub mod render;
 pub mod sampling;
+pub mod scene;
 pub mod shape;
 pub mod spectrum;
+pub mod tally;

@@ -1,1 +1,247 @@
-//! bsdf
+//! BSDFs: where light goes when it meets a surface.
+//!
+//! Conventions, the same for every model:
+//!
+//! - `wo` and `wi` are unit vectors that point **away** from the surface, in the local frame whose z axis is the shading
+//!   normal on the outside of the shape. `wo.z > 0` is outside.
+//! - A path comes from the camera: `wo` looks back along it, `wi` is where it goes on and where light comes from.
+//! - `eval` is `f(wo, wi)·|cos θi|` [1/sr]: it includes the cosine. Perfectly sharp (Dirac) lobes evaluate to zero and
+//!   can only be sampled.
+//! - `pdf` is per steradian of `wi`, over the whole sphere.
+//! - What is carried is radiance: light that passes into an index higher by `η` is squeezed into a smaller cone, so
+//!   transmission carries `1/η²`, with `η` the index on the side of `wi` over that on the side of `wo`. Hence
+//!   `f(wo, wi)/η_o² = f(wi, wo)/η_i²`, which for reflection is plain reciprocity.
+//!
+//! To add a model: one file, one variant with its forwarding lines, one row in the table of `tests/models.rs`.
+
+pub mod fresnel;
+pub mod microfacet;
+
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod rough_conductor;
+mod rough_dielectric;
+
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
+pub use diffuse::Diffuse;
+pub use rough_conductor::RoughConductor;
+pub use rough_dielectric::RoughDielectric;
+
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Lanes;
+use microfacet::TrowbridgeReitz;
+
+/// Surfaces whose roughness is below this in both directions are perfectly smooth: the lobe would be narrower than
+/// single precision can hold (as pbrt, Pharr et al. 2023, § 9.6).
+pub const SMOOTHEST_ALPHA: f32 = 1e-3;
+
+/// Interfaces between indices closer than this are sharp however rough they are: the bend is too small to be resolved.
+const LEAST_INDEX_STEP: f32 = 1e-4;
+
+/// Which sides of a surface a model answers on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sides {
+    /// Both sides alike, as in pbrt and in Mitsuba's `twosided`.
+    #[default]
+    Both,
+    /// Only the outside; the inside is black, as Mitsuba's plain `diffuse` and `conductor`.
+    Outside,
+}
+
+impl Sides {
+    /// Whether light is reflected from `wi` to `wo`: both on one side, which answers.
+    #[inline]
+    fn reflect(self, wo: Vec3, wi: Vec3) -> bool {
+        wo.z * wi.z > 0.0 && self.answer(wo)
+    }
+
+    /// Whether the side of `wo` answers.
+    #[inline]
+    fn answer(self, wo: Vec3) -> bool {
+        match self {
+            Self::Both => wo.z != 0.0,
+            Self::Outside => wo.z > 0.0,
+        }
+    }
+}
+
+/// On which side a scattered direction lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ScatterKind {
+    /// On the side of `wo`.
+    Reflection,
+    /// On the other side.
+    Transmission,
+}
+
+/// A direction drawn from a BSDF.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BsdfSample {
+    /// Where the path goes on: a unit vector away from the surface, local frame.
+    pub wi: Vec3,
+    /// `f·|cos θi| / pdf` \[1\].
+    pub weight: Lanes,
+    /// Density of `wi` [1/sr]; for Dirac lobes the probability \[1\] that this lobe was chosen.
+    pub pdf: f32,
+    /// The side on which `wi` lies.
+    pub kind: ScatterKind,
+    /// Whether the lobe is Dirac, so that `eval` and `pdf` cannot see it.
+    pub specular: bool,
+    /// The relative index crossed: `η_i/η_o` for transmission, 1 for reflection.
+    pub eta: f32,
+}
+
+/// A model of a surface. The methods only forward.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bsdf {
+    /// Lambert's law.
+    Diffuse(Diffuse),
+    /// A polished metal.
+    Conductor(Conductor),
+    /// A metal with microfacets.
+    RoughConductor(RoughConductor),
+    /// Clear smooth glass, water, the polished skin of milk.
+    Dielectric(Dielectric),
+    /// Ground glass.
+    RoughDielectric(RoughDielectric),
+    /// No surface at all: a mere boundary of media.
+    Null,
+}
+
+impl Bsdf {
+    /// Lambert's law on both sides.
+    pub fn diffuse(reflectance: Lanes) -> Self {
+        Self::Diffuse(Diffuse { reflectance, sides: Sides::Both })
+    }
+
+    /// The interface of a dielectric whose inside (−z) has `eta` times the index of its outside; rough when either
+    /// `alpha` \[1\] reaches [`SMOOTHEST_ALPHA`]. Without a step of the index it is smooth, and lets all light straight
+    /// through.
+    pub fn dielectric(eta: f32, alpha_x: f32, alpha_y: f32) -> Self {
+        match TrowbridgeReitz::unless_smooth(alpha_x, alpha_y) {
+            Some(distribution) if (eta - 1.0).abs() >= LEAST_INDEX_STEP => {
+                Self::RoughDielectric(RoughDielectric { interface: Dielectric::new(eta), distribution })
+            }
+            _ => Self::Dielectric(Dielectric::new(eta)),
+        }
+    }
+
+    /// A metal of complex index `eta + i·k` (relative to the outside, each lane its own) on both sides; rough when
+    /// either `alpha` \[1\] reaches [`SMOOTHEST_ALPHA`].
+    pub fn conductor(eta: Lanes, k: Lanes, alpha_x: f32, alpha_y: f32) -> Self {
+        let smooth = Conductor { eta, k, reflectance: Lanes::ONE, sides: Sides::Both };
+        match TrowbridgeReitz::unless_smooth(alpha_x, alpha_y) {
+            Some(distribution) => Self::RoughConductor(RoughConductor { metal: smooth, distribution }),
+            None => Self::Conductor(smooth),
+        }
+    }
+
+    /// A metal with this reflectance in [0, 1] at normal incidence: index 1 and `k = 2√r / √(1 − r)`, `r ≤ 0.9999`
+    /// (pbrt's parameter `reflectance`).
+    pub fn conductor_of_reflectance(reflectance: Lanes, alpha_x: f32, alpha_y: f32) -> Self {
+        let k = reflectance.map(|r| {
+            let r = r.clamp(0.0, 0.9999);
+            2.0 * r.sqrt() / (1.0 - r).sqrt()
+        });
+        Self::conductor(Lanes::ONE, k, alpha_x, alpha_y)
+    }
+
+    /// The same model with every reflection multiplied by `reflectance` and every transmission by `transmittance`
+    /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy.
+    #[must_use]
+    pub fn tinted(mut self, reflectance: Lanes, transmittance: Lanes) -> Self {
+        match &mut self {
+            Self::Diffuse(model) => model.reflectance *= reflectance,
+            Self::Conductor(model) => model.reflectance *= reflectance,
+            Self::RoughConductor(model) => model.metal.reflectance *= reflectance,
+            Self::Dielectric(model) => model.tint(reflectance, transmittance),
+            Self::RoughDielectric(model) => model.interface.tint(reflectance, transmittance),
+            Self::Null => {}
+        }
+        self
+    }
+
+    /// The same model answering on `sides`; interfaces always have two.
+    #[must_use]
+    pub fn on(mut self, sides: Sides) -> Self {
+        match &mut self {
+            Self::Diffuse(model) => model.sides = sides,
+            Self::Conductor(model) => model.sides = sides,
+            Self::RoughConductor(model) => model.metal.sides = sides,
+            Self::Dielectric(_) | Self::RoughDielectric(_) | Self::Null => {}
+        }
+        self
+    }
+
+    /// `f(wo, wi)·|cos θi|` [1/sr]; zero for Dirac lobes.
+    #[inline]
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Lanes {
+        match self {
+            Self::Diffuse(model) => model.eval(wo, wi),
+            Self::RoughConductor(model) => model.eval(wo, wi),
+            Self::RoughDielectric(model) => model.eval(wo, wi),
+            Self::Conductor(_) | Self::Dielectric(_) | Self::Null => Lanes::ZERO,
+        }
+    }
+
+    /// The density [1/sr] with which [`Self::sample`] draws `wi`; zero for Dirac lobes.
+    #[inline]
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        match self {
+            Self::Diffuse(model) => model.pdf(wo, wi),
+            Self::RoughConductor(model) => model.pdf(wo, wi),
+            Self::RoughDielectric(model) => model.pdf(wo, wi),
+            Self::Conductor(_) | Self::Dielectric(_) | Self::Null => 0.0,
+        }
+    }
+
+    /// Draws `wi` with `u_lobe` and `u` in [0, 1). `None`: the path ends here, absorbed or shadowed by a microfacet.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        match self {
+            Self::Diffuse(model) => model.sample(wo, u),
+            Self::Conductor(model) => model.sample(wo),
+            Self::RoughConductor(model) => model.sample(wo, u),
+            Self::Dielectric(model) => model.sample(wo, u_lobe),
+            Self::RoughDielectric(model) => model.sample(wo, u_lobe, u),
+            Self::Null => Some(straight_on(wo)),
+        }
+    }
+
+    /// Whether there is nothing but Dirac lobes, so that light sampling is in vain.
+    #[inline]
+    pub fn is_specular(&self) -> bool {
+        matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::Null)
+    }
+
+    /// Whether light can pass to the other side.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        match self {
+            Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) => false,
+            Self::Dielectric(model) => !model.transmittance.is_zero(),
+            Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
+            Self::Null => true,
+        }
+    }
+}
+
+/// The unscattered direction behind a surface that is not there.
+#[inline]
+fn straight_on(wo: Vec3) -> BsdfSample {
+    BsdfSample { wi: -wo, weight: Lanes::ONE, pdf: 1.0, kind: ScatterKind::Transmission, specular: true, eta: 1.0 }
+}
+
+/// The mirror image in the plane of the surface: where a smooth surface reflects.
+#[inline]
+fn mirrored(w: Vec3) -> Vec3 {
+    Vec3::new(-w.x, -w.y, w.z)
+}
+
+/// The other side's view of the same direction: models that are alike on both sides answer as if `wo` were outside.
+#[inline]
+fn seen_from(wo: Vec3, w: Vec3) -> Vec3 {
+    Vec3::new(w.x, w.y, w.z * 1f32.copysign(wo.z))
+}

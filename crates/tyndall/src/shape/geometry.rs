@@ -188,6 +188,11 @@ impl Geometry {
         self.world.bounds
     }
 
+    /// A box around one object, in world space unless it is part of a group.
+    pub fn object_bounds(&self, object: ObjectId) -> Bounds {
+        self.shape(object).bounds()
+    }
+
     /// A shape, in world space unless it is part of a group.
     pub fn shape(&self, object: ObjectId) -> &Shape {
         &self.shapes[object.0 as usize]

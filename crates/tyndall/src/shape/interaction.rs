@@ -43,7 +43,7 @@ impl Interaction {
     /// The ray along `dir` that leaves to the side of the surface to which `dir` points.
     #[inline]
     pub fn spawn(&self, dir: Vec3) -> Ray {
-        Ray::new(offset(self.p, self.error, self.ng, dir), dir)
+        Ray::new(offset_point(self.p, self.error, self.ng, dir), dir)
     }
 
     /// The ray to another point on a surface, and the distance up to which it must be free: both ends are moved off
@@ -52,8 +52,8 @@ impl Interaction {
     /// `None` when the points cannot be told apart.
     pub fn spawn_to(&self, other: &Self) -> Option<(Ray, f32)> {
         let between = other.p - self.p;
-        let origin = offset(self.p, self.error, self.ng, between);
-        let target = offset(other.p, other.error + along_ray_error(between), other.ng, -between);
+        let origin = offset_point(self.p, self.error, self.ng, between);
+        let target = offset_point(other.p, other.error + along_ray_error(between), other.ng, -between);
         segment(origin, target)
     }
 
@@ -61,7 +61,7 @@ impl Interaction {
     ///
     /// `None` when the points cannot be told apart.
     pub fn spawn_to_point(&self, target: Vec3) -> Option<(Ray, f32)> {
-        segment(offset(self.p, self.error, self.ng, target - self.p), target)
+        segment(offset_point(self.p, self.error, self.ng, target - self.p), target)
     }
 }
 
@@ -78,9 +78,9 @@ fn segment(origin: Vec3, target: Vec3) -> Option<(Ray, f32)> {
     (distance > 0.0 && dir.is_finite()).then(|| (Ray::new(origin, dir), distance as f32))
 }
 
-/// `p` moved off the surface to the side of `dir`.
+/// `p`, known up to `error` on a surface of normal `ng` [length], moved off the surface to the side of `dir`.
 #[inline]
-fn offset(p: Vec3, error: Vec3, ng: Vec3, dir: Vec3) -> Vec3 {
+pub fn offset_point(p: Vec3, error: Vec3, ng: Vec3, dir: Vec3) -> Vec3 {
     let ng = if dir.dot(ng) < 0.0 { -ng } else { ng };
     let by = ng * ng.abs().dot(error);
     let moved = p + by;

@@ -24,7 +24,7 @@ mod sphere;
 pub use builder::{GeometryBuilder, GroupId, ShapeError};
 pub use disk::Disk;
 pub use geometry::{Geometry, Hit, ObjectId, Shape};
-pub use interaction::Interaction;
+pub use interaction::{Interaction, offset_point};
 pub use mesh::Mesh;
 pub use patch::Patch;
 pub use sphere::Sphere;

@@ -36,6 +36,11 @@ impl Sphere {
         Self { centre, radius, reversed: false, axes: DMat3::IDENTITY, placement: None }
     }
 
+    /// Centre and radius in the world [length], unless the world sees an ellipsoid.
+    pub fn round(&self) -> Option<(Vec3, f32)> {
+        self.placement.is_none().then_some((self.centre, self.radius))
+    }
+
     pub(super) fn check(&self) -> Result<(), ShapeError> {
         if !(self.centre.is_finite() && self.radius.is_finite()) {
             return Err(ShapeError::NotFinite);

@@ -1,0 +1,263 @@
+//! What the user may ask for.
+
+use std::{path::PathBuf, time::Duration};
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use tyndall::film::Crop;
+
+use crate::values;
+
+/// A renderer for light that scatters many times: milk, marble, skin, fog.
+#[derive(Debug, Parser)]
+#[command(version, propagate_version = true, max_term_width = 110)]
+#[command(after_help = "Start with `tyndall render scenes/milk/scene.pbrt`; `tyndall help render` tells more.")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene (pbrt-v4 or Mitsuba 3) to an image with its standard error
+    Render(Box<RenderOptions>),
+    /// Compare two images: error measures, a z-test from their standard errors, a difference image
+    Compare(CompareOptions),
+    /// Render the lecture's eight estimators side by side: images, contact sheet, plot, table
+    Lecture(LectureOptions),
+    /// Tell what is in a scene, without rendering it
+    Info(InfoOptions),
+}
+
+/// Renders a scene to an image with its standard error.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tyndall render scenes/milk/scene.pbrt             milk.exr and milk.png, in this directory
+  tyndall render scene.xml --spp 1024 -o out/fog    out/fog.exr and out/fog.png
+  tyndall render scene.pbrt --time 2m -o fog.exr    as many samples as two minutes give
+  tyndall render scene.xml -D spp=64 -D g=0.9       set the scene's $parameters
+  tyndall render scene.pbrt --crop 100,50,164,98    a part of the image, the same bits as in the whole
+  tyndall render scene.pbrt --json - --quiet        statistics on standard output, nothing else
+
+Ctrl-C ends the render and saves what is done; a second Ctrl-C leaves at once. The image so far is also saved every
+ten seconds. Exit status: 0 done, 2 failed, 130 stopped by Ctrl-C.")]
+pub(crate) struct RenderOptions {
+    /// The scene: .pbrt (pbrt-v4) or .xml (Mitsuba 3)
+    pub(crate) scene: PathBuf,
+    /// Where to write: a name in .exr (numbers) or .png (for the eye), or one without ending for both; repeatable
+    /// [default: the scene's name, both, in this directory]
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) output: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) tone: ToneOptions,
+    /// Write statistics as JSON to a file, or to standard output with -
+    #[arg(long, value_name = "FILE|-", help_heading = "Output")]
+    pub(crate) json: Option<PathBuf>,
+    /// Show the image in a running tev viewer (its default address is 127.0.0.1:14158)
+    #[arg(long, value_name = "HOST:PORT", help_heading = "Output")]
+    pub(crate) tev: Option<String>,
+    /// Say nothing but errors
+    #[arg(short, long, help_heading = "Output")]
+    pub(crate) quiet: bool,
+
+    /// Samples a pixel [default: the scene's, or no limit if --time is given]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Effort")]
+    pub(crate) spp: Option<u32>,
+    /// Stop after this time, such as 30s, 2m or 1h; every pixel gets one sample at least
+    #[arg(long, value_name = "TIME", value_parser = values::duration, help_heading = "Effort")]
+    pub(crate) time: Option<Duration>,
+    /// Threads [default: one for each core]; the image does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), help_heading = "Effort")]
+    pub(crate) threads: Option<u16>,
+
+    /// Seed of the random numbers [default: the scene's, or 0]
+    #[arg(long, value_name = "N", help_heading = "What to render")]
+    pub(crate) seed: Option<u64>,
+    /// Only the pixels X0 ≤ x < X1, Y0 ≤ y < Y1 [default: the scene's]
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = values::crop, help_heading = "What to render")]
+    pub(crate) crop: Option<Crop>,
+    /// Size of the whole image instead of the scene's, for previews
+    #[arg(long, value_name = "WxH", value_parser = values::resolution, help_heading = "What to render")]
+    pub(crate) resolution: Option<[u32; 2]>,
+    /// Set a parameter of the scene, such as a Mitsuba $parameter; repeatable
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = values::definition, help_heading = "What to render")]
+    pub(crate) define: Vec<(String, String)>,
+
+    /// How light is transported
+    #[arg(long, value_name = "NAME", default_value = "volpath", help_heading = "How to render")]
+    pub(crate) integrator: IntegratorName,
+    /// What the lanes of a path carry
+    #[arg(long, value_name = "MODE", default_value = "rgb", help_heading = "How to render")]
+    pub(crate) color: ColorName,
+    /// Where the first dimensions of a sample come from
+    #[arg(long, value_name = "NAME", default_value = "sobol", help_heading = "How to render")]
+    pub(crate) sampler: SamplerName,
+    /// Most scatterings of a path, 0 for light seen directly; the energy that it loses is reported [default: the
+    /// scene's, or no limit]
+    #[arg(long, value_name = "N", help_heading = "How to render")]
+    pub(crate) max_depth: Option<u32>,
+}
+
+/// From radiance to a PNG.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct ToneOptions {
+    /// Exposure of PNG files [stops]
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, help_heading = "Output")]
+    #[arg(value_parser = values::finite)]
+    pub(crate) exposure: f32,
+    /// Curve of PNG files
+    #[arg(long, value_name = "NAME", default_value = "srgb", help_heading = "Output")]
+    pub(crate) curve: CurveName,
+}
+
+/// Compares two images.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tyndall compare a.exr b.exr                       two estimates of one scene
+  tyndall compare a.exr truth.exr --reference       truth.exr is taken as exact where it tells no standard error
+  tyndall compare a.exr b.exr --diff diff.png       red where A is brighter, blue where B is
+  tyndall compare a.exr b.exr --check               exit status 1 if they differ by more than noise
+
+The z-test divides the image into tiles. In each tile and channel z = (mean A − mean B) / standard error; the largest
+|z| and the χ² of all tiles are judged together, corrected for their number. Standard errors of Sobol renders are upper
+bounds: there the test is on the safe side, and `--sampler independent` makes it sharp.")]
+pub(crate) struct CompareOptions {
+    /// The first image (.exr)
+    pub(crate) a: PathBuf,
+    /// The second image (.exr): relative errors are relative to it
+    pub(crate) b: PathBuf,
+    /// Take an image without standard errors as exact
+    #[arg(long)]
+    pub(crate) reference: bool,
+    /// Write the signed difference of luminance as PNG
+    #[arg(long, value_name = "FILE")]
+    pub(crate) diff: Option<PathBuf>,
+    /// Edge of the tiles of the z-test [pixels]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) tiles: u32,
+    /// Chance of calling two renders of one image different
+    #[arg(long, value_name = "P", default_value_t = 0.001, value_parser = values::probability)]
+    pub(crate) significance: f64,
+    /// Exit with status 1 if the images differ by more than noise
+    #[arg(long)]
+    pub(crate) check: bool,
+    /// Write all numbers as JSON to a file, or to standard output with -
+    #[arg(long, value_name = "FILE|-")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+/// Renders the lecture's estimators side by side.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tyndall lecture                           into ./lecture: images, contact sheet, plot and table
+  tyndall lecture --spp 256 --out slides    finer, elsewhere")]
+pub(crate) struct LectureOptions {
+    /// Samples a pixel of each estimator; the equal-time images get as long as the slowest of them took
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) spp: u32,
+    /// Samples a pixel of the reference, by volpath
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) reference_spp: u32,
+    /// Size of the images [default: that of the scenes]
+    #[arg(long, value_name = "WxH", value_parser = values::resolution)]
+    pub(crate) resolution: Option<[u32; 2]>,
+    /// Directory to write to
+    #[arg(long, value_name = "DIR", default_value = "lecture")]
+    pub(crate) out: PathBuf,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Tells what is in a scene.
+#[derive(Debug, Args)]
+pub(crate) struct InfoOptions {
+    /// The scene: .pbrt (pbrt-v4) or .xml (Mitsuba 3)
+    pub(crate) scene: PathBuf,
+    /// Set a parameter of the scene, such as a Mitsuba $parameter; repeatable
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = values::definition)]
+    pub(crate) define: Vec<(String, String)>,
+}
+
+/// Estimators by the names of the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum IntegratorName {
+    /// The workhorse: next event estimation, multiple importance sampling, spectral MIS
+    Volpath,
+    /// Its naive twin: an oracle of a page
+    Analog,
+    /// Kajiya-style, surfaces only: walks until the light goes out
+    #[value(name = "lecture-surface-0")]
+    LectureSurface0,
+    /// … with Russian roulette
+    #[value(name = "lecture-surface-0.5")]
+    LectureSurface05,
+    /// … and importance sampling of the BRDF
+    #[value(name = "lecture-surface-0.75")]
+    LectureSurface075,
+    /// … and luminaire sampling
+    #[value(name = "lecture-surface-1.0")]
+    LectureSurface10,
+    /// Kajiya-style, with a homogeneous volume: walks until the light goes out
+    #[value(name = "lecture-volume-0")]
+    LectureVolume0,
+    /// … with Russian roulette
+    #[value(name = "lecture-volume-0.5")]
+    LectureVolume05,
+    /// … and importance sampling of BRDF and phase function
+    #[value(name = "lecture-volume-0.75")]
+    LectureVolume075,
+    /// … and luminaire sampling
+    #[value(name = "lecture-volume-1.0")]
+    LectureVolume10,
+}
+
+/// Colour modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorName {
+    /// Linear sRGB
+    Rgb,
+    /// One grey value
+    Mono,
+    /// Four hero wavelengths; dispersion works
+    Spectral,
+}
+
+/// Samplers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SamplerName {
+    /// Owen-scrambled Sobol points: less error; standard errors are upper bounds
+    Sobol,
+    /// Independent random numbers: standard errors are exact
+    Independent,
+}
+
+/// Display curves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CurveName {
+    /// Straight sRGB, cut off at white
+    Srgb,
+    /// Hable's filmic curve (2010): rich shadows, soft highlights
+    Filmic,
+}
+
+/// The word of the command line for a value.
+pub(crate) fn word(value: &impl ValueEnum) -> String {
+    value.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+}

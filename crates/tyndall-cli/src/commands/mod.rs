@@ -1,0 +1,6 @@
+//! What the program can do, a page each.
+
+pub(crate) mod compare;
+pub(crate) mod info;
+pub(crate) mod lecture;
+pub(crate) mod render;

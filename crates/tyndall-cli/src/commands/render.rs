@@ -1,0 +1,185 @@
+//! `tyndall render SCENE`.
+
+use std::{process::ExitCode, time::Instant};
+
+use anyhow::{Context, ensure};
+use cpu_time::ProcessTime;
+use tyndall::{
+    film::{Crop, Film},
+    render::{Rendering, Settings, render},
+    sampling::SamplerKind,
+    spectrum::ColorMode,
+};
+use tyndall_formats::film::{Image, Metadata};
+
+use crate::{
+    args::{ColorName, RenderOptions, SamplerName, word},
+    integrators::integrator,
+    interrupt,
+    load::{Loaded, load},
+    outputs::{Outputs, write_text},
+    progress::Progress,
+    report::{Course, End, Startup, Statistics, samples_per_pixel},
+    tev::Tev,
+    watch::Watch,
+};
+
+/// Loads, renders, saves, tells.
+pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
+    interrupt::listen()?;
+    let outputs = Outputs::new(&options.output, &options.scene, options.tone.into())?;
+    outputs.check()?;
+    let loaded = load(&options.scene, &options.define, options.resolution, color_mode(options.color))?;
+    let settings = settings(options, &loaded)?;
+    let job = Job { options, loaded: &loaded, settings, outputs: &outputs, start: Instant::now() };
+
+    let cpu = ProcessTime::now();
+    let rendering = job.render()?;
+    let cpu_seconds = cpu.elapsed().as_secs_f64();
+    if rendering.tally.paths == 0 {
+        eprintln!("stopped before the first sample: nothing was saved");
+        return Ok(ExitCode::from(interrupt::EXIT));
+    }
+
+    let image = Image::of(&rendering.film, job.metadata(&rendering.film));
+    outputs.write(&image)?;
+    let statistics = job.statistics(&image, &rendering, cpu_seconds);
+    if !options.quiet {
+        eprintln!("{}", statistics.sentences());
+    }
+    if let Some(to) = &options.json {
+        write_text(to, &serde_json::to_string_pretty(&statistics)?)?;
+    }
+    Ok(match statistics.ended {
+        End::Interrupted => {
+            eprintln!("stopped by Ctrl-C: {} hold{} what is done", outputs.names(), plural(outputs.files.len()));
+            ExitCode::from(interrupt::EXIT)
+        }
+        End::Complete | End::Time => ExitCode::SUCCESS,
+    })
+}
+
+/// A render on its way.
+struct Job<'a> {
+    options: &'a RenderOptions,
+    loaded: &'a Loaded,
+    settings: Settings,
+    outputs: &'a Outputs,
+    start: Instant,
+}
+
+impl Job<'_> {
+    fn render(&self) -> anyhow::Result<Rendering> {
+        let Self { options, loaded, settings, .. } = self;
+        let max_depth = options.max_depth.or(loaded.desc.integrator.max_depth.map(|depth| depth.value));
+        let integrator = integrator(options.integrator, max_depth)?;
+        let camera = &loaded.scene.camera;
+        let crop = settings.crop.unwrap_or(Crop::full(camera.width, camera.height));
+        let pixels = u64::from(crop.width()) * u64::from(crop.height());
+        let progress = Progress::new(pixels, options.time, settings.spp < u32::MAX, options.quiet);
+        let tev = options.tev.as_deref().and_then(|address| self.tev(address, &progress));
+        let save = |film: &Film| self.outputs.write(&Image::of(film, self.metadata(film)));
+        let watch = Watch::new(progress, options.time, save, tev);
+
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(threads(options));
+        let pool = threads.build().context("cannot start the threads of the render")?;
+        let rendering = pool.install(|| render(&loaded.scene, integrator.as_ref(), settings, &watch));
+        watch.progress.finish();
+        Ok(rendering)
+    }
+
+    /// A connection to the viewer; without one the render goes on.
+    fn tev(&self, address: &str, progress: &Progress) -> Option<Tev> {
+        Tev::connect(address, &self.options.scene.display().to_string())
+            .map_err(|error| progress.say(&format!("warning: {error:#}")))
+            .ok()
+    }
+
+    /// How the image was made, as far as it has come.
+    fn metadata(&self, film: &Film) -> Metadata {
+        let Self { options, loaded, settings, .. } = self;
+        Metadata {
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene: options.scene.display().to_string(),
+            scene_hash: loaded.hash.clone(),
+            integrator: word(&options.integrator),
+            color: word(&options.color),
+            sampler: word(&options.sampler),
+            spp: if settings.spp == u32::MAX { 0 } else { settings.spp },
+            samples_per_pixel: samples_per_pixel(film),
+            seed: settings.seed,
+            crop: format!("{},{},{},{}", film.crop.min.0, film.crop.min.1, film.crop.max.0, film.crop.max.1),
+            wall_seconds: self.start.elapsed().as_secs_f64(),
+            command: command_line(),
+        }
+    }
+
+    fn statistics(&self, image: &Image, rendering: &Rendering, cpu_seconds: f64) -> Statistics {
+        let ended = match rendering.stopped {
+            false => End::Complete,
+            true if interrupt::requested() => End::Interrupted,
+            true => End::Time,
+        };
+        let course = Course {
+            threads: threads(self.options),
+            outputs: self.outputs.files.iter().map(|f| f.display().to_string()).collect(),
+            ended,
+            startup: Startup { load: self.loaded.load_seconds, build: self.loaded.build_seconds },
+            cpu_seconds,
+        };
+        Statistics::new(image, image.metadata.clone().unwrap_or_default(), &rendering.tally, course)
+    }
+}
+
+/// What the command line says, and where it is silent, the scene.
+fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings> {
+    let desc = &loaded.desc;
+    let spp = match (options.spp, options.time) {
+        (Some(spp), _) => spp,
+        (None, Some(_)) => u32::MAX,
+        (None, None) => desc.sampler.spp.value,
+    };
+    let seed = [desc.sampler.seed, desc.options.seed].into_iter().flatten().map(|seed| seed.value).next();
+    let crop = options.crop.or(loaded.crop);
+    let (width, height) = (loaded.scene.camera.width, loaded.scene.camera.height);
+    if let Some(crop) = crop {
+        ensure!(
+            crop.max.0 <= width && crop.max.1 <= height,
+            "the crop {},{},{},{} reaches out of the image, which is {width}x{height}",
+            crop.min.0,
+            crop.min.1,
+            crop.max.0,
+            crop.max.1,
+        );
+    }
+    let sampler = match options.sampler {
+        SamplerName::Sobol => SamplerKind::Sobol,
+        SamplerName::Independent => SamplerKind::Independent,
+    };
+    Ok(Settings { spp, first_sample: 0, seed: options.seed.or(seed).unwrap_or(0), sampler, crop })
+}
+
+pub(crate) fn color_mode(name: ColorName) -> ColorMode {
+    match name {
+        ColorName::Rgb => ColorMode::Rgb,
+        ColorName::Mono => ColorMode::Mono,
+        ColorName::Spectral => ColorMode::Spectral,
+    }
+}
+
+fn threads(options: &RenderOptions) -> usize {
+    match options.threads {
+        Some(threads) => threads.into(),
+        None => std::thread::available_parallelism().map_or(1, usize::from),
+    }
+}
+
+/// The command line, with quotes where words hold spaces.
+fn command_line() -> String {
+    let quoted = |word: String| if word.contains(' ') { format!("'{word}'") } else { word };
+    std::env::args_os().map(|word| quoted(word.to_string_lossy().into_owned())).collect::<Vec<_>>().join(" ")
+}
+
+fn plural(n: usize) -> &'static str {
+    if n == 1 { "s" } else { "" }
+}

@@ -1,0 +1,354 @@
+//! How far apart two images are, and whether noise explains it.
+//!
+//! **Measures** are means over pixels and channels: MSE `⟨(a−b)²⟩`, MAE `⟨|a−b|⟩`, relative MSE `⟨(a−b)²/(b²+0.01)⟩`
+//! (Rousselle et al. 2011, §5), PSNR `10 log₁₀(max(b)²/MSE)` [dB].
+//!
+//! **The test.** Pixels are independent, so a tile's mean has variance `Σ se² / n²`, and for two estimates of one image
+//! `z = (ā − b̄) / √(var ā + var b̄)` is standard normal in every tile and channel. Two statistics are looked at: the
+//! largest |z|, which finds a local fault, with Šidák's correction for the number of tests
+//! (`p = 1 − (1 − p₁)^N`); and for each channel `χ² = Σ z²` over tiles, which finds a small fault everywhere, corrected
+//! for three channels. Channels of one tile are correlated, which makes Šidák's correction err on the safe side. The
+//! verdict takes the smaller of the two, corrected for being the smaller of two.
+//!
+//! What arithmetic can do is not counted as a difference: rounding of the stored values (independent in each pixel), and
+//! a relative 10⁻⁶ of a tile's mean for sums of 32-bit floats along a path.
+
+use serde::Serialize;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+use tyndall_formats::film::Image;
+
+/// Relative error that arithmetic on 32-bit floats (2⁻²⁴ an operation, a dozen or two operations) may leave in a mean.
+const ARITHMETIC: f64 = 1e-6;
+
+/// Keeps relative errors finite in the dark (Rousselle et al. 2011).
+const DARK: f64 = 0.01;
+
+/// Error measures of an image against another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Measures {
+    pub(crate) mse: f64,
+    pub(crate) mae: f64,
+    pub(crate) relative_mse: f64,
+    /// [dB]; infinite for equal images.
+    pub(crate) psnr: f64,
+    pub(crate) max_difference: f64,
+    /// Where the largest difference is.
+    pub(crate) max_difference_pixel: (u32, u32),
+    /// The MSE that the standard errors alone explain; `None` where there are none.
+    pub(crate) mse_from_noise: Option<f64>,
+}
+
+/// The mean of an image, with its standard error where it is known.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct MeanColor {
+    pub(crate) rgb: [f64; 3],
+    pub(crate) standard_error: Option<[f64; 3]>,
+}
+
+/// Outcome of the z-test.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Test {
+    /// Tiles times channels that could be tested.
+    pub(crate) tests: usize,
+    /// The largest |z|.
+    pub(crate) max_z: f64,
+    /// Upper-left pixel of the tile where it is.
+    pub(crate) max_z_pixel: (u32, u32),
+    /// Chance of a |z| that large among all tests, if the images agree.
+    pub(crate) p_max_z: f64,
+    /// χ² / degrees of freedom, each channel; about 1 if the images agree and the standard errors are right.
+    pub(crate) chi_square_per_degree: [f64; 3],
+    /// Chance of a χ² that large in any channel, if the images agree.
+    pub(crate) p_chi_square: f64,
+    /// Chance of either.
+    pub(crate) p: f64,
+}
+
+/// The numbers of pixel `i` of an image.
+fn channels(pixels: &[[f32; 3]]) -> impl Iterator<Item = f64> {
+    pixels.iter().flatten().map(|&v| f64::from(v))
+}
+
+/// Error measures of `a` against `b`, which have the same crop.
+pub(crate) fn measures(a: &Image, b: &Image) -> Measures {
+    let n = (3 * a.mean.len()).max(1) as f64;
+    let (mut squares, mut absolute, mut relative, mut peak) = (0.0, 0.0, 0.0, 0.0f64);
+    let (mut largest, mut place) = (0.0, 0);
+    for (i, (x, y)) in channels(&a.mean).zip(channels(&b.mean)).enumerate() {
+        let d = x - y;
+        squares += d * d;
+        absolute += d.abs();
+        relative += d * d / (y * y + DARK);
+        peak = peak.max(y);
+        if d.abs() > largest {
+            (largest, place) = (d.abs(), i / 3);
+        }
+    }
+    let mse = squares / n;
+    let noise = |image: &Image| image.standard_error.as_deref().map(|se| channels(se).map(|e| e * e).sum::<f64>() / n);
+    let noises = [a, b].map(noise);
+    Measures {
+        mse,
+        mae: absolute / n,
+        relative_mse: relative / n,
+        psnr: 10.0 * (peak * peak / mse).log10(),
+        max_difference: largest,
+        max_difference_pixel: pixel_at(a, place),
+        mse_from_noise: noises.iter().any(Option::is_some).then(|| noises.iter().flatten().sum()),
+    }
+}
+
+/// Mean colour: pixels are independent, so variances add.
+pub(crate) fn mean_color(image: &Image) -> MeanColor {
+    let n = image.mean.len().max(1) as f64;
+    let sum = |pixels: &[[f32; 3]], f: fn(f64) -> f64| {
+        std::array::from_fn(|c| pixels.iter().map(|p| f(f64::from(p[c]))).sum::<f64>())
+    };
+    let variances: Option<[f64; 3]> = image.standard_error.as_deref().map(|se| sum(se, |e| e * e));
+    MeanColor {
+        rgb: sum(&image.mean, |v| v).map(|s| s / n),
+        standard_error: variances.map(|v| v.map(|v| v.sqrt() / n)),
+    }
+}
+
+/// The z-test over tiles of `edge` pixels. `None` if neither image tells finite standard errors, or none to speak of.
+pub(crate) fn z_test(a: &Image, b: &Image, edge: u32) -> Option<Test> {
+    if a.standard_error.is_none() && b.standard_error.is_none() {
+        return None;
+    }
+    let (mut tests, mut max_z, mut max_at) = (0, 0.0f64, (0, 0));
+    let mut chi_square = [0.0; 3];
+    let mut degrees = [0usize; 3];
+    for tile in tiles(a, edge) {
+        for c in 0..3 {
+            let Some(z) = tile_z(a, b, &tile.pixels, c) else { continue };
+            tests += 1;
+            degrees[c] += 1;
+            chi_square[c] += z * z;
+            if z.abs() > max_z {
+                (max_z, max_at) = (z.abs(), tile.corner);
+            }
+        }
+    }
+    if tests == 0 {
+        return None;
+    }
+    let p_max_z = sidak(two_sided(max_z), tests);
+    let p_channel = (0..3).map(|c| chi_square_tail(chi_square[c], degrees[c])).fold(1.0, f64::min);
+    let p_chi_square = sidak(p_channel, 3);
+    Some(Test {
+        tests,
+        max_z,
+        max_z_pixel: max_at,
+        p_max_z,
+        chi_square_per_degree: std::array::from_fn(|c| chi_square[c] / degrees[c].max(1) as f64),
+        p_chi_square,
+        p: sidak(p_max_z.min(p_chi_square), 2),
+    })
+}
+
+struct Tile {
+    corner: (u32, u32),
+    /// Indices of its pixels.
+    pixels: Vec<usize>,
+}
+
+/// Tiles that lie on a grid fixed to the crop; those at its right and lower edge may be smaller.
+fn tiles(image: &Image, edge: u32) -> impl Iterator<Item = Tile> {
+    let (w, h) = (image.crop.width(), image.crop.height());
+    let origin = image.crop.min;
+    let columns = w.div_ceil(edge);
+    (0..columns * h.div_ceil(edge)).map(move |i| {
+        let (x0, y0) = (i % columns * edge, i / columns * edge);
+        let rows = y0..h.min(y0.saturating_add(edge));
+        let row = move |y: u32| (x0..w.min(x0.saturating_add(edge))).map(move |x| (y * w + x) as usize);
+        Tile { corner: (origin.0 + x0, origin.1 + y0), pixels: rows.flat_map(row).collect() }
+    })
+}
+
+/// z of a tile in one channel. `None` where both images are equal without noise (nothing to test), and where a standard
+/// error is infinite (a pixel with fewer than two samples tells nothing).
+fn tile_z(a: &Image, b: &Image, pixels: &[usize], c: usize) -> Option<f64> {
+    let n = pixels.len() as f64;
+    let mean = |image: &Image| pixels.iter().map(|&i| f64::from(image.mean[i][c])).sum::<f64>() / n;
+    let square = |pixels_of: &[[f32; 3]]| pixels.iter().map(|&i| f64::from(pixels_of[i][c]).powi(2)).sum::<f64>();
+    let variance = |image: &Image| {
+        let noise = image.standard_error.as_deref().map_or(0.0, square);
+        let rounding = square(&image.mean) * f64::from(image.rounding).powi(2);
+        (noise + rounding) / (n * n)
+    };
+    let (x, y) = (mean(a), mean(b));
+    if x == y && [a, b].iter().all(|i| i.standard_error.as_deref().is_none_or(|se| square(se) == 0.0)) {
+        return None;
+    }
+    let arithmetic = (ARITHMETIC * 0.5 * (x.abs() + y.abs())).powi(2);
+    let deviation = (variance(a) + variance(b) + arithmetic).sqrt();
+    if deviation.is_infinite() {
+        return None;
+    }
+    // A tile that is not a number agrees with nothing.
+    let z = (x - y) / deviation;
+    Some(if z.is_nan() { f64::INFINITY } else { z })
+}
+
+fn pixel_at(image: &Image, index: usize) -> (u32, u32) {
+    let w = image.crop.width().max(1);
+    (image.crop.min.0 + index as u32 % w, image.crop.min.1 + index as u32 / w)
+}
+
+/// P(|Z| ≥ z) of a standard normal.
+fn two_sided(z: f64) -> f64 {
+    statrs::function::erf::erfc(z / std::f64::consts::SQRT_2)
+}
+
+/// P(X ≥ x) of χ² with so many degrees of freedom.
+fn chi_square_tail(x: f64, degrees: usize) -> f64 {
+    if x.is_infinite() {
+        return 0.0;
+    }
+    ChiSquared::new(degrees as f64).map_or(1.0, |distribution| distribution.sf(x))
+}
+
+/// Šidák 1967: the chance that the smallest of `n` independent p-values is `p` or less.
+fn sidak(p: f64, n: usize) -> f64 {
+    // 1 − (1 − p)ⁿ without cancellation.
+    -((n as f64) * (-p.min(1.0)).ln_1p()).exp_m1()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tyndall::{
+        film::{Crop, Film},
+        sampling::Rng,
+    };
+    use tyndall_formats::film::Metadata;
+
+    /// A render of a flat image: samples are exponential with the given mean, so their standard deviation is the mean.
+    fn render(mean: f32, seed: u64) -> Image {
+        let mut film = Film::new(64, 48, Crop::full(64, 48));
+        for (i, pixel) in film.pixels.iter_mut().enumerate() {
+            let mut rng = Rng::for_sample((i as u32, 0), 0, seed);
+            for _ in 0..64 {
+                pixel.add(std::array::from_fn(|_| -mean * rng.next_positive().ln()));
+            }
+        }
+        Image::of(&film, Metadata::default())
+    }
+
+    /// Normal noise of known size: every z is exactly standard normal and independent, so both p-values are uniform.
+    /// Kolmogorov–Smirnov: the largest distance between the empirical and the uniform distribution of 400 values stays
+    /// below 1.63/√400 with probability 0.99.
+    #[test]
+    fn p_values_are_uniform_when_two_images_differ_by_noise_alone() {
+        let flat = render(1.0, 0);
+        let noise = |seed: u64| {
+            let mut image = flat.clone();
+            let mut rng = Rng::for_sample((0, 0), 0, seed);
+            for (mean, se) in image.mean.iter_mut().zip(image.standard_error.as_mut().unwrap()) {
+                *mean = std::array::from_fn(|_| {
+                    let (radius, turn) = ((-2.0 * rng.next_positive().ln()).sqrt(), rng.next_1d());
+                    1.0 + 0.1 * radius * (std::f32::consts::TAU * turn).cos()
+                });
+                *se = [0.1; 3];
+            }
+            image
+        };
+        let tests: Vec<Test> =
+            (0..400).map(|i| z_test(&noise(1000 + 2 * i), &noise(1001 + 2 * i), 8).unwrap()).collect();
+        assert_eq!(tests[0].tests, 8 * 6 * 3);
+        for p in [|t: &Test| t.p_max_z, |t: &Test| t.p_chi_square] {
+            let mut values: Vec<f64> = tests.iter().map(p).collect();
+            values.sort_by(f64::total_cmp);
+            let distance = values.iter().enumerate().map(|(i, p)| (p - (i as f64 + 0.5) / 400.0).abs());
+            let distance = distance.fold(0.0, f64::max);
+            assert!(distance < 1.63 / 20.0, "Kolmogorov–Smirnov distance {distance}");
+        }
+    }
+
+    /// Standard errors that are themselves estimated, from 64 samples of a skewed distribution.
+    #[test]
+    fn two_renders_of_one_image_agree() {
+        let tests: Vec<Test> =
+            (0..20).map(|i| z_test(&render(1.0, 2 * i), &render(1.0, 2 * i + 1), 8).unwrap()).collect();
+        assert!(tests.iter().all(|t| t.p > 1e-4), "{tests:?}");
+        let spread = tests.iter().flat_map(|t| t.chi_square_per_degree).sum::<f64>() / 60.0;
+        assert!((spread - 1.0).abs() < 0.05, "χ² a degree of freedom {spread}");
+    }
+
+    /// A tile has 64 pixels of 64 samples: the difference of two means is known to √2/64 = 2.2 %. A shift of 5 % is
+    /// z = 2.3, nothing to see in one tile of 144; but χ² of 48 tiles grows by 48 · 2.3² = 250, 25 standard deviations.
+    /// One tile over the whole image knows the difference to 0.32 %: there 2 % is z = 6.
+    #[test]
+    fn a_small_shift_is_found_by_chi_square_and_a_local_one_by_the_largest_z() {
+        let a = render(1.0, 1);
+        let shifted = z_test(&a, &render(1.05, 2), 8).unwrap();
+        assert!(shifted.p_chi_square < 1e-6, "{shifted:?}");
+
+        let whole = |mean| z_test(&render(mean, 3), &render(1.0, 4), 64).unwrap();
+        assert!(whole(1.02).p < 1e-4);
+
+        let mut local = render(1.0, 5);
+        for x in 8..16 {
+            for y in 16..24 {
+                local.mean[y * 64 + x][1] *= 1.2;
+            }
+        }
+        let test = z_test(&a, &local, 8).unwrap();
+        assert!(test.p_max_z < 1e-6 && test.max_z_pixel == (8, 16), "{test:?}");
+    }
+
+    /// A shift of 1 % in images of a thousand times more samples (their standard errors √1000 smaller) is obvious.
+    #[test]
+    fn one_percent_is_found_when_noise_is_small_enough() {
+        let quiet = |mean: f32, seed| {
+            let mut image = render(mean, seed);
+            for (m, se) in image.mean.iter_mut().zip(image.standard_error.as_mut().unwrap()) {
+                for c in 0..3 {
+                    m[c] = mean + (m[c] - mean) / 1000f32.sqrt();
+                    se[c] /= 1000f32.sqrt();
+                }
+            }
+            image
+        };
+        assert!(z_test(&quiet(1.01, 1), &quiet(1.0, 2), 8).unwrap().p < 1e-9);
+        assert!(z_test(&quiet(1.0, 1), &quiet(1.0, 2), 8).unwrap().p > 1e-3);
+    }
+
+    #[test]
+    fn noiseless_images_agree_when_equal_and_differ_when_not() {
+        let flat = |value: f32| {
+            let mut film = Film::new(16, 16, Crop::full(16, 16));
+            for pixel in &mut film.pixels {
+                pixel.add([value; 3]);
+                pixel.add([value; 3]);
+            }
+            Image::of(&film, Metadata::default())
+        };
+        assert_eq!(z_test(&flat(1.0), &flat(1.0), 8), None);
+        assert!(z_test(&flat(1.0), &flat(1.0 + f32::EPSILON), 8).unwrap().p > 0.1, "rounding is no difference");
+        assert!(z_test(&flat(1.0), &flat(1.001), 8).unwrap().p < 1e-9);
+        assert!(z_test(&flat(1.0), &flat(f32::NAN), 8).unwrap().p == 0.0, "what is not a number agrees with nothing");
+    }
+
+    /// a = b + 0.5 everywhere: MSE 1/4, MAE 1/2; b = 1: relative 0.25/1.01, PSNR 10 log₁₀ 4.
+    #[test]
+    fn measures_have_their_textbook_values() {
+        let mut a = render(1.0, 1);
+        let mut b = a.clone();
+        a.mean.fill([1.5; 3]);
+        b.mean.fill([1.0; 3]);
+        let m = measures(&a, &b);
+        let close = |x: f64, y: f64| (x - y).abs() < 1e-12;
+        assert!(close(m.mse, 0.25) && close(m.mae, 0.5) && close(m.relative_mse, 0.25 / 1.01), "{m:?}");
+        assert!(close(m.psnr, 10.0 * 4f64.log10()) && close(m.max_difference, 0.5));
+    }
+
+    /// 1 − (1 − 0.01)² = 0.0199; and tiny p-values times n.
+    #[test]
+    fn sidak_corrects_for_the_number_of_tests() {
+        assert!((sidak(0.01, 2) - 0.0199).abs() < 1e-12);
+        assert!((sidak(1e-18, 100) / 1e-16 - 1.0).abs() < 1e-6);
+        assert_eq!(sidak(1.0, 3), 1.0);
+    }
+}

@@ -1,0 +1,263 @@
+//! The program as a user meets it: what it says, what it leaves behind, how it ends.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    time::{Duration, Instant},
+};
+
+use tyndall_formats::film::{Image, exr};
+
+/// A ball over a floor under a small light, in fog: every kind of event in a few pixels.
+const SCENE: &str = r#"
+Film "rgb" "integer xresolution" 24 "integer yresolution" 18
+Sampler "independent" "integer pixelsamples" 4
+LookAt 0 1 -5  0 0.8 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.3 0.4 0.6 ]
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 0.4 0.5 0.6 ] "rgb sigma_a" [ 0.1 0.05 0 ] "float g" 0.5
+AttributeBegin
+  MediumInterface "fog" ""
+  Material "interface"
+  Shape "sphere" "float radius" 1.5
+AttributeEnd
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [ 9 8 7 ]
+  Translate 0 2.4 0
+  Shape "sphere" "float radius" 0.2
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+Shape "bilinearmesh" "point3 P" [ -4 -2 -4  4 -2 -4  -4 -2 4  4 -2 4 ]
+"#;
+
+/// A directory of the test's own, removed when it is done.
+struct Desk(PathBuf);
+
+impl Desk {
+    fn new(name: &str) -> Self {
+        let dir = std::env::temp_dir().join(format!("tyndall-cli-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&dir);
+        fs::create_dir_all(&dir).unwrap();
+        fs::write(dir.join("ball.pbrt"), SCENE).unwrap();
+        Self(dir)
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        command.current_dir(&self.0).args(arguments.split_whitespace());
+        command
+    }
+
+    fn tyndall(&self, arguments: &str) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Renders the ball, which must work.
+    fn render(&self, arguments: &str, image: &str) -> Image {
+        let output = self.tyndall(&format!("render ball.pbrt {arguments} -o {image}"));
+        assert!(output.status.success(), "{arguments}: {}", err(&output));
+        exr::read(&self.0.join(image)).unwrap()
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Files that were there, but for the scene.
+fn left_behind(desk: &Desk) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(&desk.0).unwrap().map(|f| f.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.retain(|name| name != "ball.pbrt");
+    names.sort();
+    names
+}
+
+#[test]
+fn help_teaches_by_example() {
+    let desk = Desk::new("help");
+    for (arguments, words) in [
+        ("--help", ["render", "compare", "lecture"]),
+        ("render --help", ["Examples:", "--spp", "lecture-volume-0.75"]),
+        ("help compare", ["--reference", "z-test", "Examples:"]),
+        ("lecture --help", ["--spp", "--out", "Examples:"]),
+    ] {
+        let output = desk.tyndall(arguments);
+        assert!(output.status.success());
+        for word in words {
+            assert!(out(&output).contains(word), "{arguments}: no {word}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_done_ends_with_status_2_and_says_why() {
+    let desk = Desk::new("bad");
+    fs::write(desk.path("bad.pbrt"), SCENE.replace("\"float radius\" 1.5", "\"float radios\" 1.5")).unwrap();
+    fs::write(desk.path("cut.exr"), [0x76, 0x2f, 0x31, 0x01, 2]).unwrap();
+    for (arguments, words) in [
+        ("render", "SCENE"),
+        ("render ball.pbrt --spp 0", "--spp"),
+        ("render ball.pbrt --spp many", "--spp"),
+        ("render ball.pbrt --time 3x", "no unit of time"),
+        ("render ball.pbrt --crop 9,9,9,9", "empty"),
+        ("render ball.pbrt --crop 0,0,99,9", "24x18"),
+        ("render ball.pbrt --integrator bdpt", "volpath"),
+        ("render ball.pbrt -o image.jpg", ".exr or .png"),
+        ("render ball.pbrt -o nowhere/image.exr", "nowhere does not exist"),
+        ("render missing.pbrt", "missing.pbrt"),
+        ("render scene.blend", ".pbrt"),
+        ("render bad.pbrt", "radius"),
+        ("render ball.pbrt -D g=0.5", "parameter"),
+        ("compare cut.exr cut.exr", "cut.exr"),
+        ("compare a.exr b.exr", "cannot read a.exr"),
+    ] {
+        let output = desk.tyndall(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {}", err(&output));
+        assert!(err(&output).contains(words), "{arguments}: no `{words}` in\n{}", err(&output));
+    }
+    assert_eq!(left_behind(&desk), ["bad.pbrt", "cut.exr"]);
+}
+
+#[test]
+fn a_fault_of_a_scene_is_shown_where_it_is() {
+    let desk = Desk::new("fault");
+    fs::write(desk.path("bad.pbrt"), SCENE.replace("\"float fov\"", "\"float fow\"")).unwrap();
+    let message = err(&desk.tyndall("render bad.pbrt"));
+    assert!(message.contains("bad.pbrt:5:") && message.contains("fow") && message.contains("fov"), "{message}");
+}
+
+#[test]
+fn the_image_is_named_after_the_scene_and_tells_how_it_was_made() {
+    let desk = Desk::new("names");
+    let output = desk.tyndall("render ball.pbrt --seed 7 --crop 2,3,20,15");
+    assert!(output.status.success(), "{}", err(&output));
+    assert_eq!(left_behind(&desk), ["ball.exr", "ball.png"]);
+    assert!(err(&output).contains("ball.exr and ball.png"), "{}", err(&output));
+    let image = exr::read(&desk.path("ball.exr")).unwrap();
+    assert_eq!((image.width, image.height, image.crop.min, image.crop.max), (24, 18, (2, 3), (20, 15)));
+    assert!(image.mean.iter().flatten().all(|v| v.is_finite()));
+    let metadata = image.metadata.unwrap();
+    assert_eq!((metadata.seed, metadata.spp, metadata.samples_per_pixel), (7, 4, 4.0));
+    assert_eq!(metadata.crop, "2,3,20,15");
+    assert!(metadata.command.ends_with("render ball.pbrt --seed 7 --crop 2,3,20,15"), "{}", metadata.command);
+    assert_eq!(metadata.scene_hash.len(), 16);
+}
+
+#[test]
+fn the_image_depends_on_the_seed_and_on_nothing_else() {
+    let desk = Desk::new("bits");
+    let first = desk.render("--spp 8", "a.exr");
+    let same = |image: &Image| first.mean == image.mean && first.standard_error == image.standard_error;
+    assert!(same(&desk.render("--spp 8", "b.exr")), "twice");
+    assert!(same(&desk.render("--spp 8 --threads 1", "b.exr")), "one thread");
+    assert!(same(&desk.render("--spp 8 --threads 3", "b.exr")), "three threads");
+    assert!(!same(&desk.render("--spp 8 --seed 1", "b.exr")), "another seed");
+}
+
+#[test]
+fn a_crop_of_the_image_is_the_image_of_the_crop() {
+    let desk = Desk::new("crop");
+    let whole = desk.render("--spp 4", "whole.exr");
+    let crop = desk.render("--spp 4 --crop 5,3,22,17", "crop.exr");
+    for (i, mean) in crop.mean.iter().enumerate() {
+        let (x, y) = (5 + i % 17, 3 + i / 17);
+        assert_eq!(*mean, whole.mean[y * 24 + x], "pixel {x},{y}");
+    }
+}
+
+#[test]
+fn statistics_go_to_standard_output_alone() {
+    let desk = Desk::new("json");
+    let output = desk.tyndall("render ball.pbrt --quiet --json - --max-depth 2");
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", err(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["paths"], 24 * 18 * 4);
+    assert_eq!(json["ended"], "complete");
+    for name in ["rays", "shadow_rays", "collisions", "mean_path_length", "ns_per_collision", "energy_lost_to_limit"] {
+        assert!(json[name].as_f64().unwrap() > 0.0, "{name} in {json:#}");
+    }
+    assert_eq!(json["non_finite_samples"], 0);
+    let mean = json["image"]["rgb"][1].as_f64().unwrap();
+    assert!(mean > 0.01 && json["image"]["standard_error"][1].as_f64().unwrap() < 0.2 * mean, "{json:#}");
+}
+
+#[test]
+fn a_limit_of_time_ends_the_render_with_an_image() {
+    let desk = Desk::new("time");
+    let image = desk.render("--time 300ms", "a.exr");
+    let taken = image.metadata.unwrap().samples_per_pixel;
+    assert!(taken > 1.0, "{taken} samples a pixel");
+}
+
+#[test]
+fn two_renders_agree_and_a_brighter_one_does_not() {
+    let desk = Desk::new("compare");
+    desk.render("--spp 64 --sampler independent", "a.exr");
+    desk.render("--spp 64 --sampler independent --seed 1", "b.exr");
+    fs::write(desk.path("ball.pbrt"), SCENE.replace("0.3 0.4 0.6", "0.32 0.43 0.64")).unwrap();
+    desk.render("--spp 64 --sampler independent --seed 2", "c.exr");
+
+    let agree = desk.tyndall("compare a.exr b.exr --check --json -");
+    assert_eq!(agree.status.code(), Some(0), "{}", out(&agree));
+    let json: serde_json::Value = serde_json::from_slice(&agree.stdout).unwrap();
+    assert_eq!(json["verdict"], "agree");
+
+    let differ = desk.tyndall("compare a.exr c.exr --check --diff diff.png");
+    assert_eq!(differ.status.code(), Some(1), "{}", out(&differ));
+    assert!(out(&differ).contains("DIFFER"));
+    assert!(desk.path("diff.png").exists());
+    assert!(out(&desk.tyndall("compare a.exr a.exr --check")).contains("identical"));
+}
+
+#[test]
+fn ctrl_c_leaves_the_image_so_far() {
+    let desk = Desk::new("interrupt");
+    let child = desk.command("render ball.pbrt --spp 4000000000 -o a").stderr(Stdio::piped()).spawn().unwrap();
+    // Long enough that the first passes are done on a loaded machine; the first image is there within milliseconds.
+    std::thread::sleep(Duration::from_millis(1500));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let begun = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    assert!(begun.elapsed() < Duration::from_secs(20));
+    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    assert!(err(&output).contains("a.exr and a.png"), "{}", err(&output));
+    assert_eq!(left_behind(&desk), ["a.exr", "a.png"]);
+    let image = exr::read(&desk.path("a.exr")).unwrap();
+    assert!(image.metadata.unwrap().samples_per_pixel > 1.0);
+}
+
+#[test]
+fn info_tells_media_by_their_lengths() {
+    let desk = Desk::new("info");
+    let output = desk.tyndall("info ball.pbrt");
+    assert!(output.status.success(), "{}", err(&output));
+    // 1/(0.5 + 0.05) = 1.8182; 1/(0.05 + 0.5·0.5) = 3.3333.
+    for words in ["24x18", "fog", "1.8182", "3.3333"] {
+        assert!(out(&output).contains(words), "no {words} in\n{}", out(&output));
+    }
+}
+
+#[test]
+fn other_resolutions_show_the_same_picture() {
+    let desk = Desk::new("resolution");
+    let image = desk.render("--resolution 12x9", "a.exr");
+    assert_eq!((image.width, image.height), (12, 9));
+    assert!(Path::new(&desk.path("a.exr")).exists());
+}

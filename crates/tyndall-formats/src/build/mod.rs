@@ -1,0 +1,116 @@
+//! From what the user wrote to what is rendered: reads meshes and images, converts units, checks the physics.
+
+mod lights;
+mod materials;
+mod media;
+mod shapes;
+mod spectra;
+
+use glam::DMat4;
+use tyndall::{
+    camera::Camera,
+    film::{Crop, Filter},
+    light::LightTable,
+    math::Transform,
+    scene::Scene,
+    spectrum::ColorMode,
+};
+
+use crate::{
+    desc::{CameraDesc, FilmDesc, FilterDesc, MaterialId, MediumId, SceneDesc},
+    error::{Diagnostics, ErrorList, SceneError},
+    source::{SourceMap, Span},
+};
+
+/// Makes the world of a description. Everything that is wrong with it is found in one go.
+///
+/// # Errors
+/// Files that cannot be read, unknown names of measured data, coefficients that are no physics.
+pub fn build(desc: &SceneDesc, sources: SourceMap, color: ColorMode) -> Result<(Scene, SourceMap), Diagnostics> {
+    let mut errors = ErrorList::default();
+    let scene = (Builder { desc, errors: &mut errors }).scene(color);
+    match scene {
+        Some(scene) if errors.is_empty() => Ok((scene, sources)),
+        _ => Err(errors.into_diagnostics(sources)),
+    }
+}
+
+/// A scene in the making.
+struct Builder<'a> {
+    desc: &'a SceneDesc,
+    errors: &'a mut ErrorList,
+}
+
+impl Builder<'_> {
+    fn scene(&mut self, color: ColorMode) -> Option<Scene> {
+        let materials = self.desc.materials.iter().map(|m| self.material(m)).collect::<Vec<_>>();
+        let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
+        let shapes = self.shapes();
+        let lights = self.lights();
+        let camera = self.camera(&self.desc.camera, &self.desc.film);
+        let materials = materials.into_iter().collect::<Option<Vec<_>>>()?;
+        let media = media.into_iter().collect::<Option<Vec<_>>>()?;
+        let (shapes, lights, camera) = (shapes?, lights?, camera?);
+        let middle = shapes.geometry.bounds().centre();
+        let middle = if middle.is_finite() { middle } else { glam::Vec3::ZERO };
+        let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect(), middle);
+        Some(Scene::new(color, camera, shapes.geometry, shapes.objects, materials, media, table))
+    }
+
+    fn camera(&mut self, camera: &CameraDesc, film: &FilmDesc) -> Option<Camera> {
+        let window = camera.window(film.width, film.height);
+        Some(Camera {
+            to_world: self.transform(camera.to_world, camera.span)?,
+            window: [window.left, window.right, window.bottom, window.top].map(|v| v as f32),
+            width: film.width,
+            height: film.height,
+            filter: self.filter(&film.filter, film.span)?,
+            exposure: film.exposure as f32,
+            medium: camera.medium.map(|m| medium_id(m.value)),
+        })
+    }
+
+    fn filter(&mut self, filter: &FilterDesc, span: Span) -> Option<Filter> {
+        let radii = |r: [f64; 2]| r.map(|v| v as f32);
+        Some(match *filter {
+            FilterDesc::Box { radius } => Filter::Box { radius: radii(radius) },
+            FilterDesc::Triangle { radius } => Filter::Triangle { radius: radii(radius) },
+            FilterDesc::Gaussian { radius, sigma } => Filter::Gaussian { radius: radii(radius), sigma: sigma as f32 },
+            FilterDesc::Mitchell { .. } | FilterDesc::Sinc { .. } => {
+                return self.fail(
+                    SceneError::at(span, "filters with negative lobes are not known yet")
+                        .help("use a box, triangle or gaussian filter"),
+                );
+            }
+        })
+    }
+
+    fn transform(&mut self, matrix: DMat4, span: Span) -> Option<Transform> {
+        match Transform::new(matrix) {
+            Some(transform) => Some(transform),
+            None => self.fail(
+                SceneError::at(span, "this transform is singular: it squashes space flat, or is not finite")
+                    .help("look for a scale of 0, or a look-at whose up points along the view"),
+            ),
+        }
+    }
+
+    /// Notes a fault; the value that could not be made is `None`.
+    fn fail<T>(&mut self, error: SceneError) -> Option<T> {
+        self.errors.push(error);
+        None
+    }
+}
+
+/// The crop of a film, if it has one.
+pub fn crop(film: &FilmDesc) -> Option<Crop> {
+    film.crop.map(|c| Crop { min: (c.x0, c.y0), max: (c.x1, c.y1) })
+}
+
+fn medium_id(id: MediumId) -> tyndall::medium::MediumId {
+    tyndall::medium::MediumId(id.0)
+}
+
+fn material_id(id: MaterialId) -> tyndall::scene::MaterialId {
+    tyndall::scene::MaterialId(id.0)
+}

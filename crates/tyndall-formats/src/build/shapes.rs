@@ -1,0 +1,299 @@
+//! Shapes, groups, instances, and the lights that shapes are.
+
+use tyndall::{
+    light::{AreaLight, EmitterShape, Light, LightId},
+    math::{Vec2, Vec3},
+    medium,
+    scene::{Emission, Object},
+    shape::{Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere},
+};
+
+use super::{Builder, material_id, medium_id};
+use crate::{
+    desc::{AreaLightDesc, FileRef, GroupDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
+    error::SceneError,
+    mesh::{MeshError, TriangleMesh, read_obj, read_ply},
+};
+
+/// All shapes of a scene.
+pub(super) struct Shapes {
+    pub(super) geometry: Geometry,
+    pub(super) objects: Vec<Object>,
+    pub(super) lights: Vec<Light>,
+}
+
+/// Shapes in the making.
+#[derive(Default)]
+struct Gathered<'a> {
+    builder: GeometryBuilder,
+    objects: Vec<Object>,
+    /// Objects that shine, and what of them.
+    emitters: Vec<(ObjectId, &'a AreaLightDesc)>,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn shapes(&mut self) -> Option<Shapes> {
+        let desc = self.desc;
+        let mut gathered = Gathered::default();
+        for shape in &desc.shapes {
+            self.shape(&mut gathered, shape);
+        }
+        let groups: Vec<Option<GroupId>> = desc.groups.iter().map(|g| self.group(&mut gathered, g)).collect();
+        for instance in &desc.instances {
+            let group = groups.get(instance.group.value.0 as usize).copied().flatten()?;
+            let transform = self.transform(instance.to_world, instance.span)?;
+            if let Err(e) = gathered.builder.add_instance(group, &transform) {
+                self.errors.push(SceneError::at(instance.span, e.to_string()));
+            }
+        }
+        let geometry = match gathered.builder.build() {
+            Ok(geometry) => geometry,
+            Err(e) => return self.fail(SceneError::new(e.to_string())),
+        };
+        let mut lights = Vec::new();
+        for (object, emission) in gathered.emitters {
+            gathered.objects[object.0 as usize].emission = self.emitters(&geometry, object, emission, &mut lights)?;
+        }
+        Some(Shapes { geometry, objects: gathered.objects, lights })
+    }
+
+    fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> Option<GroupId> {
+        let id = gathered.builder.begin_group();
+        for shape in &group.shapes {
+            if let Some(emission) = &shape.emission {
+                self.errors.push(
+                    SceneError::at(emission.span, "shapes that shine cannot be instanced yet")
+                        .help("place this shape in the world itself"),
+                );
+            }
+            self.shape(gathered, shape);
+        }
+        gathered.builder.end_group();
+        Some(id)
+    }
+
+    /// Adds the objects of one shape; a mesh of patches is one object a patch.
+    fn shape(&mut self, gathered: &mut Gathered<'a>, desc: &'a ShapeDesc) -> Option<()> {
+        let transform = self.transform(desc.to_world, desc.span)?;
+        let reversed = desc.reverse_orientation;
+        let builder = &mut gathered.builder;
+        let added = match &desc.kind {
+            ShapeKind::Sphere { radius } => {
+                vec![builder.add_sphere(Sphere::new(Vec3::ZERO, *radius as f32), &transform, reversed)]
+            }
+            ShapeKind::Disk { height, radius, inner_radius } => {
+                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32);
+                vec![builder.add_disk(disk, &transform, reversed)]
+            }
+            ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],
+            ShapeKind::Cube => vec![builder.add_mesh(cube(), &transform, reversed)],
+            ShapeKind::TriangleMesh(mesh) => vec![builder.add_mesh(inline_mesh(mesh), &transform, reversed)],
+            ShapeKind::BilinearMesh(patches) => {
+                patches_of(patches).map(|patch| builder.add_patch(patch, &transform, reversed)).collect()
+            }
+            ShapeKind::Ply { path, face_normals, flip_tex_coords } => {
+                let mesh = self.mesh_file(read_ply(&path.value), path, *face_normals, *flip_tex_coords)?;
+                vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
+            }
+            ShapeKind::Obj { path, face_normals, flip_tex_coords } => {
+                let mesh = self.mesh_file(read_obj(&path.value), path, *face_normals, *flip_tex_coords)?;
+                vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
+            }
+        };
+        for object in added {
+            self.bind(gathered, desc, object)?;
+        }
+        Some(())
+    }
+
+    /// Material, media and light of an object that was just added.
+    fn bind(
+        &mut self,
+        gathered: &mut Gathered<'a>,
+        desc: &'a ShapeDesc,
+        object: Result<ObjectId, ShapeError>,
+    ) -> Option<()> {
+        let object = match object {
+            Ok(object) => object,
+            Err(e) => return self.fail(SceneError::at(desc.span, e.to_string())),
+        };
+        gathered.objects.push(Object {
+            name: desc.name.clone().unwrap_or_default(),
+            material: material_id(desc.material.value),
+            interface: desc.interface.map(|i| medium::MediumInterface {
+                inside: i.inside.map(medium_id),
+                outside: i.outside.map(medium_id),
+            }),
+            emission: Emission::None,
+        });
+        gathered.emitters.extend(desc.emission.as_ref().map(|e| (object, e)));
+        Some(())
+    }
+
+    fn mesh_file(
+        &mut self,
+        mesh: Result<TriangleMesh, MeshError>,
+        path: &FileRef,
+        face_normals: bool,
+        flip_tex_coords: bool,
+    ) -> Option<Mesh> {
+        match mesh {
+            Ok(mesh) => {
+                let mut uvs = mesh.uvs.unwrap_or_default();
+                if flip_tex_coords {
+                    uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
+                }
+                let normals = if face_normals { Vec::new() } else { mesh.normals.unwrap_or_default() };
+                Some(Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false })
+            }
+            Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
+        }
+    }
+
+    /// The lights of a shining object, added to `lights`.
+    fn emitters(
+        &mut self,
+        geometry: &Geometry,
+        object: ObjectId,
+        desc: &AreaLightDesc,
+        lights: &mut Vec<Light>,
+    ) -> Option<Emission> {
+        let radiance = self.emission(&desc.radiance)?;
+        let luminance = radiance.luminance();
+        if radiance.is_zero() {
+            return Some(Emission::None);
+        }
+        let first = LightId(lights.len() as u32);
+        let mut shine = |shape: EmitterShape| {
+            let radiance = radiance.clone();
+            lights.push(Light::Area(AreaLight { shape, radiance, luminance, two_sided: desc.two_sided }));
+        };
+        match geometry.shape(object) {
+            Shape::Sphere(sphere) => match sphere.round() {
+                Some((centre, radius)) => shine(EmitterShape::Sphere { centre, radius, inward: sphere.reversed }),
+                None => return self.cannot_shine(desc, "an ellipsoid"),
+            },
+            Shape::Disk(disk) => match disk.radius() {
+                Some(radius) => shine(EmitterShape::Disk {
+                    centre: disk.centre,
+                    ng: disk.normal(),
+                    radius,
+                    inner: disk.inner * radius,
+                }),
+                None => return self.cannot_shine(desc, "an elliptic disk"),
+            },
+            Shape::Patch(_) => return self.cannot_shine(desc, "a curved bilinear patch"),
+            Shape::Mesh(mesh) => {
+                if let Some(parallelogram) = as_parallelogram(mesh) {
+                    shine(parallelogram);
+                    return Some(Emission::Whole(first));
+                }
+                for prim in 0..mesh.indices.len() as u32 {
+                    shine(triangle(mesh.triangle(prim), mesh.reversed));
+                }
+                return Some(Emission::EachPrimitive(first));
+            }
+        }
+        Some(Emission::Whole(first))
+    }
+
+    fn cannot_shine<T>(&mut self, desc: &AreaLightDesc, what: &str) -> Option<T> {
+        self.fail(
+            SceneError::at(desc.span, format!("light from {what} is not known yet")).help("use a mesh of triangles"),
+        )
+    }
+}
+
+fn triangle([a, b, c]: [Vec3; 3], reversed: bool) -> EmitterShape {
+    let (e1, e2) = (b - a, c - a);
+    let ng = unit_normal(e1, e2);
+    EmitterShape::Triangle { a, e1, e2, ng: if reversed { -ng } else { ng } }
+}
+
+/// In double precision: thin triangles have normals too.
+fn unit_normal(e1: Vec3, e2: Vec3) -> Vec3 {
+    e1.as_dvec3().cross(e2.as_dvec3()).normalize_or_zero().as_vec3()
+}
+
+/// Two triangles that make a parallelogram, as one emitter: it can be sampled by solid angle.
+fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
+    if mesh.indices.len() != 2 {
+        return None;
+    }
+    let [first, second] = [mesh.triangle(0), mesh.triangle(1)];
+    // Turn the first triangle until its corner 0 is the one that the second does not have.
+    let turn = (0..3).find(|i| !second.contains(&first[*i]))?;
+    let [a, b, c] = [first[turn], first[(turn + 1) % 3], first[(turn + 2) % 3]];
+    let far = second.into_iter().find(|p| *p != b && *p != c)?;
+    let (e1, e2) = (b - a, c - a);
+    let size = (b - a).length() + (c - a).length() + a.length();
+    let ng = unit_normal(e1, e2);
+    let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(ng) > 0.999;
+    let closes = (b + e2 - far).length() <= 4.0 * f32::EPSILON * size;
+    (closes && same_side && second.contains(&b) && second.contains(&c))
+        .then(|| EmitterShape::Parallelogram { a, e1, e2, ng: if mesh.reversed { -ng } else { ng } })
+}
+
+fn inline_mesh(mesh: &MeshDesc) -> Mesh {
+    Mesh {
+        positions: mesh.positions.iter().map(|p| Vec3::from_array(*p)).collect(),
+        indices: mesh.indices.clone(),
+        normals: mesh.normals.iter().map(|n| Vec3::from_array(*n)).collect(),
+        uvs: mesh.uvs.iter().map(|uv| Vec2::from_array(*uv)).collect(),
+        reversed: false,
+    }
+}
+
+fn patches_of(patches: &PatchDesc) -> impl Iterator<Item = Patch> {
+    patches.indices.iter().map(|corners| Patch::new(corners.map(|i| Vec3::from_array(patches.positions[i as usize]))))
+}
+
+/// The square [−1, 1]² at z = 0, seen from +z.
+fn rectangle() -> Mesh {
+    let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+    Mesh {
+        positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+        indices: vec![[0, 1, 2], [2, 3, 0]],
+        normals: Vec::new(),
+        uvs: vec![Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 1.0)],
+        reversed: false,
+    }
+}
+
+/// The cube [−1, 1]³ with shared corners, so that it is closed.
+fn cube() -> Mesh {
+    let sign = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
+    let positions = (0..8u32).map(|i| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4))).collect();
+    let indices = vec![
+        [0, 2, 1], [1, 2, 3], // z = −1
+        [4, 5, 6], [5, 7, 6], // z = +1
+        [0, 1, 4], [1, 5, 4], // y = −1
+        [2, 6, 3], [3, 6, 7], // y = +1
+        [0, 4, 2], [2, 4, 6], // x = −1
+        [1, 3, 5], [3, 7, 5], // x = +1
+    ];
+    Mesh { positions, indices, normals: Vec::new(), uvs: Vec::new(), reversed: false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_face_of_the_cube_looks_outward() {
+        let cube = cube();
+        for prim in 0..12 {
+            let [a, b, c] = cube.triangle(prim);
+            assert!((b - a).cross(c - a).dot(a + b + c) > 0.0, "triangle {prim}");
+        }
+    }
+
+    #[test]
+    fn a_rectangle_is_one_emitter_that_shines_along_z() {
+        let Some(EmitterShape::Parallelogram { e1, e2, ng, .. }) = as_parallelogram(&rectangle()) else { panic!() };
+        assert_eq!((e1.cross(e2).length(), ng), (4.0, Vec3::Z));
+        let mut bent = rectangle();
+        bent.positions[3] = Vec3::new(-1.5, 1.0, 0.0);
+        assert!(as_parallelogram(&bent).is_none());
+    }
+}

@@ -1,0 +1,97 @@
+//! What surfaces are made of.
+
+use super::{Span, Spanned, SpectrumDesc};
+
+/// A material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialDesc {
+    /// The words that made it.
+    pub span: Span,
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// The model.
+    pub kind: MaterialKind,
+    /// Whether a model that reflects only does so on both sides. pbrt: always; Mitsuba: if wrapped in `twosided`.
+    /// Without it the side that the normal points away from is black. Models that transmit have two sides anyway.
+    pub two_sided: bool,
+}
+
+/// The model of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialKind {
+    /// Lambert's law.
+    Diffuse {
+        /// Reflectance, in [0, 1].
+        reflectance: Spanned<SpectrumDesc>,
+    },
+    /// A metal.
+    Conductor {
+        /// How it reflects.
+        optics: ConductorOptics,
+        /// Roughness.
+        roughness: RoughnessDesc,
+        /// Factor on what is reflected, if not 1.
+        tint: Option<Spanned<SpectrumDesc>>,
+    },
+    /// Glass, water, the skin of milk.
+    Dielectric {
+        /// Refractive index of the inside relative to the outside.
+        eta: Spanned<SpectrumDesc>,
+        /// Roughness.
+        roughness: RoughnessDesc,
+        /// Factor on what is reflected, if not 1.
+        reflection_tint: Option<Spanned<SpectrumDesc>>,
+        /// Factor on what is transmitted, if not 1.
+        transmission_tint: Option<Spanned<SpectrumDesc>>,
+    },
+    /// No surface at all: a boundary of media that light passes unchanged.
+    Interface,
+}
+
+/// How a metal reflects.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConductorOptics {
+    /// By Fresnel's equations for the complex index eta + i·k, relative to vacuum.
+    EtaK {
+        /// Real part.
+        eta: Spanned<SpectrumDesc>,
+        /// Imaginary part.
+        k: Spanned<SpectrumDesc>,
+    },
+    /// By Fresnel's equations for the index (eta = 1) that gives this reflectance at normal incidence (pbrt).
+    Reflectance(Spanned<SpectrumDesc>),
+    /// As a perfect mirror, at every angle (Mitsuba's material `none`).
+    Mirror,
+}
+
+/// Roughness in the user's measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughnessDesc {
+    /// Along the first tangent, at least 0: 0 is smooth.
+    pub u: f64,
+    /// Along the second tangent.
+    pub v: f64,
+    /// Whether `u` and `v` are perceived roughness, whose square root is the α of the model (pbrt), or α itself.
+    pub remap: bool,
+    /// The distribution of normals.
+    pub distribution: MicrofacetKind,
+}
+
+/// A distribution of microscopic normals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MicrofacetKind {
+    /// Trowbridge and Reitz, known as GGX.
+    Ggx,
+    /// Beckmann and Spizzichino.
+    Beckmann,
+}
+
+impl RoughnessDesc {
+    /// No roughness.
+    pub const SMOOTH: Self = Self { u: 0.0, v: 0.0, remap: false, distribution: MicrofacetKind::Ggx };
+
+    /// The model's α along the two tangents.
+    pub fn alpha(&self) -> [f64; 2] {
+        if self.remap { [self.u.sqrt(), self.v.sqrt()] } else { [self.u, self.v] }
+    }
+}

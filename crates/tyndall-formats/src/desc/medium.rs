@@ -1,0 +1,64 @@
+//! Participating media.
+
+use super::{EmissionDesc, MediumId, Span, Spanned, SpectrumDesc};
+
+/// A homogeneous medium.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MediumDesc {
+    /// The words that made it.
+    pub span: Span,
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// What it does to light.
+    pub coefficients: Coefficients,
+    /// Factor on both coefficients, at least 0.
+    pub scale: Spanned<f64>,
+    /// Where it scatters to.
+    pub phase: PhaseDesc,
+    /// Light that it emits \[W·m⁻²·sr⁻¹ per unit of absorption\]: what is added to the radiance along a ray is `sigma_a · Le`.
+    pub emission: Option<EmissionDesc>,
+}
+
+/// Absorption and scattering, in the words that the user chose.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Coefficients {
+    /// Measured ones of this name \[1/mm\].
+    Preset(Spanned<String>),
+    /// Both coefficients.
+    AbsorptionScattering {
+        /// Absorption \[1/scene unit\].
+        sigma_a: Spanned<SpectrumDesc>,
+        /// Scattering \[1/scene unit\].
+        sigma_s: Spanned<SpectrumDesc>,
+    },
+    /// Their sum, and the part of it that scatters.
+    ExtinctionAlbedo {
+        /// Extinction \[1/scene unit\].
+        sigma_t: Spanned<SpectrumDesc>,
+        /// Single-scattering albedo, in [0, 1].
+        albedo: Spanned<SpectrumDesc>,
+    },
+}
+
+/// A phase function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PhaseDesc {
+    /// The same in all directions.
+    Isotropic,
+    /// Henyey and Greenstein's.
+    HenyeyGreenstein {
+        /// Mean cosine, in (-1, 1): positive is forward.
+        g: Spanned<f64>,
+    },
+}
+
+/// What is on either side of a surface. `None` is empty space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MediumInterface {
+    /// The words that said so.
+    pub span: Span,
+    /// On the side that the normal points away from.
+    pub inside: Option<MediumId>,
+    /// On the side that the normal points to.
+    pub outside: Option<MediumId>,
+}

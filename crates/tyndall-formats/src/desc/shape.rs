@@ -1,0 +1,126 @@
+//! Shapes, groups and instances. Geometry stays in the shape's own space.
+
+use glam::DMat4;
+
+use super::{AreaLightDesc, FileRef, GroupId, MaterialId, MediumInterface, Span, Spanned};
+
+/// A shape with everything that was bound to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeDesc {
+    /// The words that made it.
+    pub span: Span,
+    /// Its name, if the language gives names to shapes.
+    pub name: Option<String>,
+    /// The geometry.
+    pub kind: ShapeKind,
+    /// Its own space to world (to the group's space, in a [`GroupDesc`]).
+    pub to_world: DMat4,
+    /// Whether the natural normal is turned round (see [`crate::desc`]).
+    pub reverse_orientation: bool,
+    /// What the surface is made of.
+    pub material: Spanned<MaterialId>,
+    /// Light that it emits.
+    pub emission: Option<AreaLightDesc>,
+    /// What is on either side of it, if the user says.
+    pub interface: Option<MediumInterface>,
+}
+
+/// The geometry of a shape. Lengths are scene units before [`ShapeDesc::to_world`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShapeKind {
+    /// A sphere around the origin.
+    Sphere {
+        /// Radius, positive.
+        radius: f64,
+    },
+    /// A disk, or a ring, around the z axis.
+    Disk {
+        /// Its z.
+        height: f64,
+        /// Outer radius, positive.
+        radius: f64,
+        /// Inner radius: 0 for a full disk.
+        inner_radius: f64,
+    },
+    /// The square [-1, 1]² at z = 0, normal +z.
+    Rectangle,
+    /// The cube [-1, 1]³.
+    Cube,
+    /// Triangles written in the scene.
+    TriangleMesh(MeshDesc),
+    /// Bilinear patches written in the scene.
+    BilinearMesh(PatchDesc),
+    /// A PLY file: triangles and quadrilaterals.
+    Ply {
+        /// The file.
+        path: FileRef,
+        /// Whether normals of the file are left out and each face is flat.
+        face_normals: bool,
+        /// Whether a file without normals is shaded with smooth ones, weighted by angle (Mitsuba, unless `face_normals`),
+        /// or flat (pbrt).
+        smooth_normals: bool,
+        /// Whether v of the texture coordinates runs the other way.
+        flip_tex_coords: bool,
+    },
+    /// A Wavefront OBJ file.
+    Obj {
+        /// The file.
+        path: FileRef,
+        /// Whether normals of the file are left out and each face is flat.
+        face_normals: bool,
+        /// Whether a file without normals is shaded with smooth ones, weighted by angle (Mitsuba, unless `face_normals`),
+        /// or flat (pbrt).
+        smooth_normals: bool,
+        /// Whether v of the texture coordinates runs the other way.
+        flip_tex_coords: bool,
+    },
+}
+
+/// Triangles. Checked by the reader: indices are in range, and normals and coordinates are none or as many as positions.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshDesc {
+    /// Corners.
+    pub positions: Vec<[f32; 3]>,
+    /// Three corners a triangle.
+    pub indices: Vec<[u32; 3]>,
+    /// Normals at the corners, or none. Not necessarily unit vectors.
+    pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates at the corners, or none.
+    pub uvs: Vec<[f32; 2]>,
+}
+
+/// Bilinear patches: `p(u,v)` between corners `p00, p10, p01, p11`, in this order; the natural normal is ∂p/∂u × ∂p/∂v.
+/// Checked as [`MeshDesc`] is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PatchDesc {
+    /// Corners.
+    pub positions: Vec<[f32; 3]>,
+    /// Four corners a patch.
+    pub indices: Vec<[u32; 4]>,
+    /// Normals at the corners, or none.
+    pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates at the corners, or none.
+    pub uvs: Vec<[f32; 2]>,
+}
+
+/// Shapes that are placed together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupDesc {
+    /// The words that name it.
+    pub span: Span,
+    /// Its name.
+    pub name: String,
+    /// Its shapes.
+    pub shapes: Vec<ShapeDesc>,
+}
+
+/// A placed group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InstanceDesc {
+    /// The words that made it.
+    pub span: Span,
+    /// Which group.
+    pub group: Spanned<GroupId>,
+    /// The group's space to world.
+    pub to_world: DMat4,
+}

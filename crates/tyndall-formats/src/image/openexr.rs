@@ -1,0 +1,28 @@
+//! OpenEXR: the first layer with channels R, G and B, of any number type and compression; alpha is not used.
+
+use std::io::Cursor;
+
+use exr::prelude::*;
+
+use super::{Image, check_size};
+
+pub(super) fn parse(bytes: &[u8]) -> std::result::Result<Image, String> {
+    let headers = MetaData::read_from_buffered(bytes, false).map_err(|error| error.to_string())?.headers;
+    for header in &headers {
+        check_size(header.layer_size.x() as u64, header.layer_size.y() as u64)?;
+    }
+    let layer = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgba_channels(
+            |size, _| (size.width(), vec![[0.0; 3]; size.area()]),
+            |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| pixels[at.y() * *width + at.x()] = [r, g, b],
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|error| error.to_string())?
+        .layer_data;
+    let (width, height) = check_size(layer.size.width() as u64, layer.size.height() as u64)?;
+    Ok(Image { width, height, pixels: layer.channel_data.pixels.1 })
+}

@@ -1,0 +1,94 @@
+//! Triangle meshes as they stand in files: PLY and OBJ.
+//!
+//! A file is read whole, and nothing is allocated that its own bytes could not fill, so that a header which promises
+//! 10¹² vertices is an error and not an exhausted machine. What a reader returns has passed [`TriangleMesh::checked`].
+
+mod normals;
+mod obj;
+mod ply;
+
+use std::path::{Path, PathBuf};
+
+use tyndall::math::{Vec2, Vec3};
+
+pub use obj::{parse_obj, read_obj};
+pub use ply::{parse_ply, read_ply, write_ply};
+
+/// Triangles over shared vertices, in the file's own frame and winding.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TriangleMesh {
+    /// Where each vertex is \[length\].
+    pub positions: Vec<Vec3>,
+    /// The three vertices of each triangle, counter-clockwise as seen from outside.
+    pub indices: Vec<[u32; 3]>,
+    /// Shading normal of each vertex; not normalised.
+    pub normals: Option<Vec<Vec3>>,
+    /// Texture coordinates of each vertex, as the file has them.
+    pub uvs: Option<Vec<Vec2>>,
+}
+
+/// Why a mesh file could not be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct MeshError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub problem: String,
+}
+
+impl TriangleMesh {
+    /// This mesh, if a renderer can take it: it has triangles, every index has its vertex, every number is finite, and
+    /// normals and texture coordinates, if any, are as many as the vertices.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn checked(self) -> Result<Self, String> {
+        let vertices = self.positions.len();
+        if self.indices.is_empty() {
+            return Err("has no triangles".into());
+        }
+        if let Some(i) = self.positions.iter().position(|p| !p.is_finite()) {
+            return Err(format!("the position of vertex {i} is {}", self.positions[i]));
+        }
+        if let Some(i) = self.indices.iter().flatten().find(|&&i| i as usize >= vertices) {
+            return Err(format!("a face uses vertex {i}, but there are {vertices} (counted from 0)"));
+        }
+        let normals = self.normals.as_deref().unwrap_or_default();
+        let uvs = self.uvs.as_deref().unwrap_or_default();
+        if let Some(i) = normals.iter().position(|n| !n.is_finite()) {
+            return Err(format!("the normal of vertex {i} is {}", normals[i]));
+        }
+        if let Some(i) = uvs.iter().position(|uv| !uv.is_finite()) {
+            return Err(format!("the texture coordinates of vertex {i} are {}", uvs[i]));
+        }
+        for (count, what) in
+            [(&self.normals.as_ref().map(Vec::len), "normals"), (&self.uvs.as_ref().map(Vec::len), "uvs")]
+        {
+            if count.is_some_and(|count| count != vertices) {
+                return Err(format!("has {vertices} vertices but {} {what}", count.unwrap_or_default()));
+            }
+        }
+        Ok(self)
+    }
+}
+
+/// Reads a whole file and hands its bytes to `parse`; either may find it at fault.
+fn read_with(
+    path: &Path,
+    parse: impl FnOnce(Vec<u8>) -> Result<TriangleMesh, String>,
+) -> Result<TriangleMesh, MeshError> {
+    std::fs::read(path)
+        .map_err(|error| error.to_string())
+        .and_then(parse)
+        .map_err(|problem| MeshError { path: path.to_owned(), problem })
+}
+
+/// Splits a polygon into the fan of triangles around its first corner; fewer than three corners are none.
+fn fan(polygon: &[u32], triangles: &mut Vec<[u32; 3]>) {
+    let Some((&first, rest)) = polygon.split_first() else { return };
+    triangles.extend(rest.windows(2).map(|side| [first, side[0], side[1]]));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,175 @@
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `null`, and `twosided` around one that reflects.
+
+use super::object::{Measure, Object, Report};
+use super::scene::Builder;
+use super::tree::Element;
+use super::words;
+use crate::desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc};
+use crate::error::SceneError;
+use crate::source::Spanned;
+
+/// Refractive indices by name, at 589 nm and room temperature (Hecht, "Optics", 4th ed., as Mitsuba documents them).
+const INDICES: &[(&str, f64)] = &[
+    ("vacuum", 1.0),
+    ("helium", 1.000036),
+    ("hydrogen", 1.000132),
+    ("air", 1.000277),
+    ("carbon dioxide", 1.00045),
+    ("water", 1.3330),
+    ("acetone", 1.36),
+    ("ethanol", 1.361),
+    ("carbon tetrachloride", 1.461),
+    ("glycerol", 1.4729),
+    ("benzene", 1.501),
+    ("silicone oil", 1.52045),
+    ("bromine", 1.661),
+    ("water ice", 1.31),
+    ("fused quartz", 1.458),
+    ("pyrex", 1.470),
+    ("acrylic glass", 1.49),
+    ("polypropylene", 1.49),
+    ("bk7", 1.5046),
+    ("sodium chloride", 1.544),
+    ("amber", 1.55),
+    ("pet", 1.5750),
+    ("diamond", 2.419),
+];
+
+/// Metals whose indices are known by name.
+const METALS: &[&str] = &["Ag", "Al", "Au", "Cu"];
+
+impl<'t> Builder<'t> {
+    pub(super) fn bsdf(&mut self, element: &'t Element) -> Option<MaterialDesc> {
+        let plugin = words::plugin(element, &mut self.report)?;
+        let name = element.attribute("id").map(|id| id.value.clone());
+        if plugin != "twosided" {
+            let kind = self.bsdf_kind(plugin, element)?;
+            return Some(MaterialDesc { span: element.span, name, kind, two_sided: false });
+        }
+        let mut object = self.object(element);
+        let inside = object.nested("bsdf");
+        object.finish(&mut self.report);
+        let error = match inside[..] {
+            [front] => match words::plugin(front.element, &mut self.report)? {
+                plugin @ ("diffuse" | "conductor" | "roughconductor") => {
+                    let kind = self.bsdf_kind(plugin, front.element)?;
+                    return Some(MaterialDesc { span: element.span, name, kind, two_sided: true });
+                }
+                plugin => {
+                    let what =
+                        if plugin == "twosided" { "two-sided already" } else { "not a surface that only reflects" };
+                    SceneError::at(front.element.span_of("type"), format!("\"{plugin}\" is {what}"))
+                        .help("leave the \"twosided\" out")
+                }
+            },
+            [] => SceneError::at(element.span, "\"twosided\" has no <bsdf> inside"),
+            _ => SceneError::at(inside[1].at.span, "two materials in one \"twosided\" are not known yet"),
+        };
+        self.report.errors.push(error);
+        None
+    }
+
+    /// Any plugin but `twosided`.
+    fn bsdf_kind(&mut self, plugin: &str, element: &'t Element) -> Option<MaterialKind> {
+        let mut object = self.object(element);
+        let report = &mut self.report;
+        let kind = match plugin {
+            "diffuse" => {
+                MaterialKind::Diffuse { reflectance: object.spectrum_or("reflectance", Measure::Part, 0.5, report) }
+            }
+            "dielectric" | "roughdielectric" => MaterialKind::Dielectric {
+                eta: relative_index(&mut object, report),
+                roughness: roughness(plugin == "roughdielectric", &mut object, report),
+                reflection_tint: object.spectrum("specular_reflectance", Measure::Part, report),
+                transmission_tint: object.spectrum("specular_transmittance", Measure::Part, report),
+            },
+            "conductor" | "roughconductor" => MaterialKind::Conductor {
+                optics: conductor(&mut object, report)?,
+                roughness: roughness(plugin == "roughconductor", &mut object, report),
+                tint: object.spectrum("specular_reflectance", Measure::Part, report),
+            },
+            _ => MaterialKind::Interface,
+        };
+        object.finish(report);
+        Some(kind)
+    }
+}
+
+/// `int_ior` over `ext_ior`.
+fn relative_index(object: &mut Object, report: &mut Report) -> Spanned<SpectrumDesc> {
+    let inside = index(object, "int_ior", "bk7", report);
+    let outside = index(object, "ext_ior", "air", report);
+    Spanned::new(SpectrumDesc::Constant(inside.value / outside.value), inside.span)
+}
+
+/// A refractive index, by value or by the name of a substance.
+fn index(object: &mut Object, name: &'static str, default: &str, report: &mut Report) -> Spanned<f64> {
+    let by_name = |word: &str| INDICES.iter().find(|(known, _)| *known == word).map(|(_, index)| *index);
+    let default = Spanned::new(by_name(default).unwrap_or(1.0), object.element.span);
+    let Some((tag, text)) = object.number_or_name(name, report) else { return default };
+    let error = if tag == "string" {
+        if let Some(index) = by_name(&text.value.to_lowercase()) {
+            return text.map(|_| index);
+        }
+        let message = format!("no refractive index is known for \"{}\"", text.value);
+        SceneError::at(text.span, message).suggest(text.value, INDICES.iter().map(|(known, _)| *known))
+    } else {
+        match super::number::number(text.value, text.span) {
+            Ok(index) if index > 0.0 => return text.map(|_| index),
+            Ok(_) => SceneError::at(text.span, format!("\"{name}\" must be greater than 0, not {}", text.value)),
+            Err(error) => error,
+        }
+    };
+    report.errors.push(error);
+    default
+}
+
+/// Mitsuba's distribution is Beckmann's unless the file says otherwise, and its α is that of the model.
+fn roughness(rough: bool, object: &mut Object, report: &mut Report) -> RoughnessDesc {
+    if !rough {
+        return RoughnessDesc::SMOOTH;
+    }
+    object.ignore(&["sample_visible"], "only visible normals are sampled", report);
+    let kinds = [("beckmann", MicrofacetKind::Beckmann), ("ggx", MicrofacetKind::Ggx)];
+    let distribution = object.choice("distribution", &kinds, report);
+    let mut alpha = |name| object.float(name, |alpha| alpha >= 0.0, "at least 0", report);
+    let (both, u, v) = (alpha("alpha"), alpha("alpha_u"), alpha("alpha_v"));
+    let (u, v) = match (both, u, v) {
+        (Some(both), None, None) => (both.value, both.value),
+        (None, Some(u), Some(v)) => (u.value, v.value),
+        (None, None, None) => (0.1, 0.1),
+        (_, u, v) => {
+            let span = u.or(v).map_or(object.element.span, |given| given.span);
+            report.errors.push(SceneError::at(span, "give either \"alpha\", or both \"alpha_u\" and \"alpha_v\""));
+            (0.1, 0.1)
+        }
+    };
+    RoughnessDesc { u, v, remap: false, distribution }
+}
+
+/// By `eta` and `k`, by the name of a `material`, or a perfect mirror.
+fn conductor(object: &mut Object, report: &mut Report) -> Option<ConductorOptics> {
+    let material = object.string("material", report);
+    let eta = object.spectrum("eta", Measure::Amount, report);
+    let k = object.spectrum("k", Measure::Amount, report);
+    match (eta, k, material) {
+        (Some(eta), Some(k), None) => Some(ConductorOptics::EtaK { eta, k }),
+        (None, None, None) => Some(ConductorOptics::Mirror),
+        (None, None, Some(material)) if material.value == "none" => Some(ConductorOptics::Mirror),
+        (None, None, Some(material)) if METALS.contains(&material.value) => {
+            let data = |what| material.map(|metal| SpectrumDesc::Named(format!("metal-{metal}-{what}")));
+            Some(ConductorOptics::EtaK { eta: data("eta"), k: data("k") })
+        }
+        (None, None, Some(material)) => {
+            let error = SceneError::at(material.span, format!("the metal \"{}\" is not known", material.value));
+            report.errors.push(error.suggest(material.value, METALS.iter().copied().chain(["none"])));
+            None
+        }
+        _ => {
+            let error =
+                SceneError::at(object.element.span, "a conductor has either a \"material\", or both \"eta\" and \"k\"");
+            report.errors.push(error);
+            None
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! `<sensor type="perspective">` with its `<film>`, `<rfilter>` and `<sampler>`.
+//!
+//! Mitsuba's camera looks along its own +z with +x to the left of the image; a [`CameraDesc`] has +x to the right. So the
+//! x axis is turned round: `to_world · diag(−1, 1, 1)`.
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::object::{Object, Report};
+use super::scene::Builder;
+use super::tree::Element;
+use super::words;
+use crate::desc::{CameraDesc, CropDesc, FilmDesc, FilterDesc, FovAxis, SamplerDesc};
+use crate::error::SceneError;
+use crate::source::{Span, Spanned};
+
+/// The largest film \[pixels a side\].
+const LARGEST_SIDE: u32 = 1 << 16;
+
+/// The camera, its film and its sampler.
+pub(super) fn sensor<'t>(
+    builder: &mut Builder<'t>,
+    element: &'t Element,
+) -> Option<(CameraDesc, FilmDesc, SamplerDesc)> {
+    words::plugin(element, &mut builder.report)?;
+    let mut object = builder.object(element);
+    let film = match object.only("film", &mut builder.report) {
+        Some(film) => film_desc(builder, film.element)?,
+        None => default_film(element.span),
+    };
+    let sampler = match object.only("sampler", &mut builder.report) {
+        Some(sampler) => sampler_desc(builder, sampler.element)?,
+        None => default_sampler(element.span),
+    };
+    let medium = object.only("medium", &mut builder.report);
+    let medium = medium.and_then(|m| Some(Spanned::new(builder.medium_id(m.element)?, m.at.span)));
+
+    let report = &mut builder.report;
+    let (fov, fov_axis) = field_of_view(&mut object, report);
+    let to_world = object.transform(report);
+    check_rigid(to_world, element, report);
+    object.ignore(&["near_clip", "far_clip"], "nothing is too near or too far to be seen", report);
+    object.ignore(&["shutter_open", "shutter_close"], "nothing moves", report);
+    object.not_yet(&["principal_point_offset_x", "principal_point_offset_y", "srf"], report);
+    object.finish(report);
+    let camera = CameraDesc {
+        span: element.span,
+        to_world: to_world * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)),
+        fov,
+        fov_axis,
+        aspect: None,
+        screen_window: None,
+        medium,
+    };
+    Some((camera, film, sampler))
+}
+
+/// `fov` along `fov_axis`, or the focal length of a 35 mm camera, whose picture is 36 × 24 mm.
+fn field_of_view(object: &mut Object, report: &mut Report) -> (Spanned<f64>, FovAxis) {
+    let axes = [
+        ("x", FovAxis::X),
+        ("y", FovAxis::Y),
+        ("diagonal", FovAxis::Diagonal),
+        ("smaller", FovAxis::Smaller),
+        ("larger", FovAxis::Larger),
+    ];
+    let fov = object.float("fov", |fov| fov > 0.0 && fov < 180.0, "greater than 0 and less than 180", report);
+    let axis = object.choice("fov_axis", &axes, report);
+    let focal_length = object.string("focal_length", report);
+    if let (Some(fov), Some(length)) = (fov, focal_length) {
+        let error = SceneError::at(length.span, "\"fov\" and \"focal_length\" say the same thing twice");
+        report.errors.push(error.related(fov.span, "the field of view is given here"));
+    }
+    if let Some(fov) = fov {
+        return (fov, axis);
+    }
+    let length = focal_length.unwrap_or(Spanned::new("50mm", object.element.span));
+    let millimetres = length.value.trim().trim_end_matches("mm").trim().parse::<f64>();
+    let millimetres = millimetres.ok().filter(|mm| mm.is_finite() && *mm > 0.0).unwrap_or_else(|| {
+        let error = SceneError::at(length.span, format!("\"{}\" is no focal length", length.value));
+        report.errors.push(error.help("write \"50mm\", for example"));
+        50.0
+    });
+    let fov = 2.0 * (36.0f64.hypot(24.0) / (2.0 * millimetres)).atan();
+    (Spanned::new(fov.to_degrees(), length.span), FovAxis::Diagonal)
+}
+
+/// Mitsuba takes no camera that is scaled.
+fn check_rigid(to_world: DMat4, element: &Element, report: &mut Report) {
+    let linear = DMat3::from_mat4(to_world);
+    if !(linear.transpose() * linear).abs_diff_eq(DMat3::IDENTITY, 1e-3) {
+        report.errors.push(SceneError::at(element.span, "the \"to_world\" of a sensor cannot scale or shear"));
+    }
+}
+
+fn default_film(span: Span) -> FilmDesc {
+    FilmDesc { span, width: 768, height: 576, crop: None, filename: None, filter: gaussian(0.5), exposure: 1.0 }
+}
+
+fn film_desc<'t>(builder: &mut Builder<'t>, element: &'t Element) -> Option<FilmDesc> {
+    words::plugin(element, &mut builder.report)?;
+    let mut object = builder.object(element);
+    let filter = match object.only("rfilter", &mut builder.report) {
+        Some(filter) => filter_desc(builder, filter.element)?,
+        None => gaussian(0.5),
+    };
+    let report = &mut builder.report;
+    let default = default_film(element.span);
+    let width = object.count("width", 1, default.width, report);
+    let height = object.count("height", 1, default.height, report);
+    for side in [width, height] {
+        if side.value > LARGEST_SIDE {
+            let message = format!("a film of {} pixels a side is too large: at most {LARGEST_SIDE}", side.value);
+            report.errors.push(SceneError::at(side.span, message));
+        }
+    }
+    let crop = crop(&mut object, width.value, height.value, report);
+    let format = ["pixel_format", "component_format", "file_format", "compensate", "banner"];
+    object.ignore(&format, "the format of the image is chosen on the command line", report);
+    object.ignore(&["sample_border"], "the filter is sampled, so no border is needed", report);
+    object.finish(report);
+    Some(FilmDesc { width: width.value, height: height.value, crop, filter, ..default })
+}
+
+fn crop(object: &mut Object, width: u32, height: u32, report: &mut Report) -> Option<CropDesc> {
+    let given = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"].iter().any(|name| object.has(name));
+    let x = object.count("crop_offset_x", 0, 0, report);
+    let y = object.count("crop_offset_y", 0, 0, report);
+    let w = object.count("crop_width", 1, width, report);
+    let h = object.count("crop_height", 1, height, report);
+    for (offset, size, whole) in [(x, w, width), (y, h, height)] {
+        if u64::from(offset.value) + u64::from(size.value) > u64::from(whole) {
+            let message = format!(
+                "the crop reaches pixel {}, but there are {whole}",
+                u64::from(offset.value) + u64::from(size.value)
+            );
+            report.errors.push(SceneError::at(size.span, message));
+            return None;
+        }
+    }
+    given.then(|| CropDesc { x0: x.value, y0: y.value, x1: x.value + w.value, y1: y.value + h.value })
+}
+
+/// Mitsuba cuts its Gaussian off at four standard deviations.
+fn gaussian(sigma: f64) -> FilterDesc {
+    FilterDesc::Gaussian { radius: [4.0 * sigma; 2], sigma }
+}
+
+fn filter_desc<'t>(builder: &mut Builder<'t>, element: &'t Element) -> Option<FilterDesc> {
+    let kind = words::plugin(element, &mut builder.report)?;
+    let mut object = builder.object(element);
+    let report = &mut builder.report;
+    let mut positive =
+        |name, default| object.float(name, |v| v > 0.0, "greater than 0", report).map_or(default, |v| v.value);
+    let filter = match kind {
+        "box" => FilterDesc::Box { radius: [0.5; 2] },
+        "tent" => FilterDesc::Triangle { radius: [positive("radius", 1.0); 2] },
+        "gaussian" => gaussian(positive("stddev", 0.5)),
+        "mitchell" => {
+            let mut weight = |name| object.float(name, |_| true, "", report).map_or(1.0 / 3.0, |v| v.value);
+            FilterDesc::Mitchell { radius: [2.0; 2], b: weight("B"), c: weight("C") }
+        }
+        // The cubic of Mitchell and Netravali with B = 0 and C = 1/2.
+        "catmullrom" => FilterDesc::Mitchell { radius: [2.0; 2], b: 0.0, c: 0.5 },
+        _ => {
+            let lobes = f64::from(object.count("lobes", 1, 3, report).value);
+            FilterDesc::Sinc { radius: [lobes; 2], tau: lobes }
+        }
+    };
+    object.finish(report);
+    Some(filter)
+}
+
+fn default_sampler(span: Span) -> SamplerDesc {
+    SamplerDesc { kind: Spanned::new("independent".into(), span), spp: Spanned::new(4, span), seed: None }
+}
+
+fn sampler_desc<'t>(builder: &mut Builder<'t>, element: &'t Element) -> Option<SamplerDesc> {
+    let kind = words::plugin(element, &mut builder.report)?;
+    let mut object = builder.object(element);
+    let report = &mut builder.report;
+    let spp = object.count("sample_count", 1, 4, report);
+    let seed = object.integer("seed", 0, report).map(|seed| seed.map(i64::cast_unsigned));
+    object.ignore(&["jitter", "strength"], "there is one sampler, of low discrepancy", report);
+    object.finish(report);
+    Some(SamplerDesc { kind: Spanned::new(kind.into(), element.span_of("type")), spp, seed })
+}

@@ -1,0 +1,92 @@
+//! Mitsuba 3 scenes (XML).
+//!
+//! ```text
+//! scene.xml ─▶ tree ─▶ scene ─▶ SceneDesc
+//!              XML, includes,   plugins and their
+//!              $parameters      parameters, references
+//! ```
+//!
+//! What is read, with Mitsuba's defaults: sensor `perspective`, film `hdrfilm` and the filters, all samplers; integrators
+//! `path`, `volpath`, `volpathmis`, `direct`; shapes `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `shapegroup`,
+//! `instance`; bsdfs `diffuse`, `twosided`, `dielectric`, `roughdielectric`, `conductor`, `roughconductor`, `null`; emitters
+//! `area`, `constant`, `envmap`, `point`, `spot`, `directional`; medium `homogeneous` with `isotropic` and `hg`. Any other
+//! word is an error, with the nearest word that is known; a word that Mitsuba has and tyndall does not have yet is said to
+//! be that. Words that change nothing here are kept in [`SceneDesc::ignored`].
+//!
+//! Where Mitsuba's conventions differ from pbrt's, the description says which holds: see [`crate::desc`]. A plain number
+//! for a light is white light, as an RGB triple is; for anything else it is the same at every wavelength.
+
+mod bsdf;
+mod camera;
+mod emitter;
+mod integrator;
+mod medium;
+mod number;
+mod object;
+mod parameters;
+mod scene;
+mod shape;
+mod transform;
+mod tree;
+mod words;
+
+use std::path::Path;
+
+use crate::desc::SceneDesc;
+use crate::error::{Diagnostics, ErrorList, SceneError};
+use crate::source::{FileId, SourceMap};
+
+/// Reads a Mitsuba scene. `overrides` are its parameters, as `-D name=value` gives them.
+///
+/// # Errors
+/// Everything that is wrong with the scene.
+pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(SceneDesc, SourceMap), Diagnostics> {
+    let mut sources = SourceMap::default();
+    match sources.read(path, None) {
+        Ok(file) => read(sources, file, overrides),
+        Err(error) => Err(alone(error, sources)),
+    }
+}
+
+/// Reads a Mitsuba scene from a text. Files that it names lie beside `path`, which need not exist.
+///
+/// # Errors
+/// Everything that is wrong with the scene.
+pub fn parse(path: &Path, text: &str, overrides: &[(String, String)]) -> Result<(SceneDesc, SourceMap), Diagnostics> {
+    let mut sources = SourceMap::default();
+    match sources.add(path, text) {
+        Some(file) => read(sources, file, overrides),
+        None => Err(alone(SceneError::new(format!("{} is too large", path.display())), sources)),
+    }
+}
+
+fn read(
+    mut sources: SourceMap,
+    file: FileId,
+    overrides: &[(String, String)],
+) -> Result<(SceneDesc, SourceMap), Diagnostics> {
+    let mut errors = ErrorList::default();
+    let Some(tree) = tree::read(file, overrides, &mut sources, &mut errors) else {
+        return Err(in_order(errors.into_diagnostics(sources)));
+    };
+    let (scene, errors) = scene::build(&tree, &sources, errors);
+    match scene {
+        Some(scene) => errors.finish(scene, sources).map_err(in_order),
+        None => Err(in_order(errors.into_diagnostics(sources))),
+    }
+}
+
+/// Parts are not built in the order of the file; faults are read in it.
+fn in_order(mut diagnostics: Diagnostics) -> Diagnostics {
+    diagnostics.errors.sort_by_key(|error| error.span.map(|span| (span.file, span.start)));
+    diagnostics
+}
+
+fn alone(error: SceneError, sources: SourceMap) -> Diagnostics {
+    let mut errors = ErrorList::default();
+    errors.push(error);
+    errors.into_diagnostics(sources)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,179 @@
+//! From the tree to the scene: finds the parts, follows references, builds each part once.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use super::object::{Child, Ids, Object, Report};
+use super::tree::{self, Element, Tree};
+use super::{camera, integrator, words};
+use crate::desc::{
+    FileRef, GroupDesc, GroupId, InstanceDesc, IntegratorDesc, LengthUnit, LightDesc, MaterialDesc, MaterialId,
+    MediumDesc, MediumId, Options, SceneDesc, ShapeDesc,
+};
+use crate::error::{ErrorList, SceneError};
+use crate::source::{SourceMap, Span, Spanned};
+
+/// The scene as far as it is built.
+pub(super) struct Builder<'t> {
+    ids: Ids<'t>,
+    sources: &'t SourceMap,
+    directories: &'t [PathBuf],
+    pub(super) report: Report,
+    /// Parts that are built, or were found wrong, by the element that says them.
+    built_materials: HashMap<Span, Option<MaterialId>>,
+    built_media: HashMap<Span, Option<MediumId>>,
+    pub(super) built_groups: HashMap<Span, GroupId>,
+    /// The materials of shapes that name none: that of a surface, and that of one that shines.
+    pub(super) default_materials: [Option<MaterialId>; 2],
+    pub(super) materials: Vec<MaterialDesc>,
+    pub(super) media: Vec<MediumDesc>,
+    pub(super) shapes: Vec<ShapeDesc>,
+    pub(super) groups: Vec<GroupDesc>,
+    pub(super) instances: Vec<InstanceDesc>,
+    pub(super) lights: Vec<LightDesc>,
+}
+
+/// The scene of a tree, and all that is wrong with it. `None` only if something is wrong.
+pub(super) fn build(tree: &Tree, sources: &SourceMap, errors: ErrorList) -> (Option<SceneDesc>, ErrorList) {
+    let mut report = Report { errors, ..Report::default() };
+    let ids = ids(tree, &mut report.errors);
+    let mut builder = Builder {
+        ids,
+        sources,
+        directories: &tree.directories,
+        report,
+        built_materials: HashMap::new(),
+        built_media: HashMap::new(),
+        built_groups: HashMap::new(),
+        default_materials: [None; 2],
+        materials: Vec::new(),
+        media: Vec::new(),
+        shapes: Vec::new(),
+        groups: Vec::new(),
+        instances: Vec::new(),
+        lights: Vec::new(),
+    };
+    let scene = builder.scene(&tree.root);
+    (scene, builder.report.errors)
+}
+
+/// Every object that has an `id`, and every alias.
+fn ids<'t>(tree: &'t Tree, errors: &mut ErrorList) -> Ids<'t> {
+    let mut ids = Ids::new();
+    let mut rest = vec![&tree.root];
+    while let Some(element) = rest.pop() {
+        rest.extend(element.children.iter().rev());
+        let Some(id) = element.attribute("id").filter(|_| element.tag != "ref") else { continue };
+        if let Some(first) = ids.insert(&id.value, element) {
+            let error = SceneError::at(id.span, format!("the id \"{}\" is taken", id.value));
+            errors.push(error.related(first.span_of("id"), "first here"));
+        }
+    }
+    for (alias, id) in &tree.aliases {
+        match ids.get(id.value.as_str()) {
+            Some(&element) => drop(ids.entry(alias).or_insert(element)),
+            None => errors.push(SceneError::at(id.span, format!("nothing has the id \"{}\"", id.value))),
+        }
+    }
+    ids
+}
+
+impl<'t> Builder<'t> {
+    pub(super) fn object(&mut self, element: &'t Element) -> Object<'t> {
+        Object::new(element, &self.ids, &mut self.report)
+    }
+
+    /// The file that a `filename` names.
+    pub(super) fn file(&self, name: Spanned<&str>) -> FileRef {
+        name.map(|text| tree::resolve(text, name.span.file, self.directories, self.sources))
+    }
+
+    fn scene(&mut self, root: &'t Element) -> Option<SceneDesc> {
+        let mut scene = self.object(root);
+        for bsdf in scene.nested("bsdf") {
+            self.material(bsdf.element);
+        }
+        for medium in scene.nested("medium") {
+            self.medium_id(medium.element);
+        }
+        for texture in scene.nested("texture").into_iter().chain(scene.nested("volume")) {
+            words::plugin(texture.element, &mut self.report);
+        }
+        for shape in scene.nested("shape") {
+            self.shape_or_instance(shape.element);
+        }
+        for emitter in scene.nested("emitter") {
+            if let Some(light) = self.light(emitter.element) {
+                self.lights.push(light);
+            }
+        }
+        let integrator = match scene.only("integrator", &mut self.report) {
+            Some(integrator) => integrator::integrator(self, integrator.element),
+            None => Some(default_integrator(root.span)),
+        };
+        let sensor = self.sensor(&mut scene);
+        let seen = sensor.and_then(|sensor| camera::sensor(self, sensor.element));
+        scene.finish(&mut self.report);
+
+        let (camera, film, sampler) = seen?;
+        Some(SceneDesc {
+            options: Options { unit: Spanned::new(LengthUnit::Millimetre, root.span), seed: None },
+            camera,
+            film,
+            sampler,
+            integrator: integrator?,
+            materials: std::mem::take(&mut self.materials),
+            media: std::mem::take(&mut self.media),
+            shapes: std::mem::take(&mut self.shapes),
+            groups: std::mem::take(&mut self.groups),
+            instances: std::mem::take(&mut self.instances),
+            lights: std::mem::take(&mut self.lights),
+            ignored: std::mem::take(&mut self.report.ignored),
+        })
+    }
+
+    /// The first sensor, as in Mitsuba.
+    fn sensor(&mut self, scene: &mut Object<'t>) -> Option<Child<'t>> {
+        let sensors = scene.nested("sensor");
+        if sensors.is_empty() {
+            let error = SceneError::at(scene.element.span, "the scene has no <sensor>");
+            self.report.errors.push(error.help("add a <sensor type=\"perspective\">"));
+        }
+        let reason = "the first sensor of the scene makes the image";
+        self.report.ignored.extend(sensors.iter().skip(1).map(|s| crate::desc::Ignored { span: s.at.span, reason }));
+        sensors.first().copied()
+    }
+
+    /// The material of a `<bsdf>`, built once.
+    pub(super) fn material(&mut self, element: &'t Element) -> Option<MaterialId> {
+        if let Some(&built) = self.built_materials.get(&element.span) {
+            return built;
+        }
+        let id = self.bsdf(element).map(|material| self.add_material(material));
+        self.built_materials.insert(element.span, id);
+        id
+    }
+
+    pub(super) fn add_material(&mut self, material: MaterialDesc) -> MaterialId {
+        self.materials.push(material);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// The id of a `<medium>`, built once.
+    pub(super) fn medium_id(&mut self, element: &'t Element) -> Option<MediumId> {
+        if let Some(&built) = self.built_media.get(&element.span) {
+            return built;
+        }
+        let id = self.medium(element).map(|medium| {
+            self.media.push(medium);
+            MediumId(self.media.len() as u32 - 1)
+        });
+        self.built_media.insert(element.span, id);
+        id
+    }
+}
+
+/// Mitsuba's `path`, which it takes if a scene names none.
+fn default_integrator(span: Span) -> IntegratorDesc {
+    IntegratorDesc { name: Spanned::new("path".into(), span), max_depth: None, rr_depth: None, hide_emitters: false }
+}

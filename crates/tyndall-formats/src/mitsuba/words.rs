@@ -1,0 +1,103 @@
+//! The plugins of Mitsuba 3.9: those that are read here, and those that are not known yet.
+
+use super::object::Report;
+use super::tree::Element;
+use crate::error::SceneError;
+
+struct Plugins {
+    tag: &'static str,
+    known: &'static [&'static str],
+    later: &'static [&'static str],
+}
+
+const PLUGINS: &[Plugins] = &[
+    Plugins {
+        tag: "bsdf",
+        known: &["diffuse", "twosided", "dielectric", "roughdielectric", "conductor", "roughconductor", "null"],
+        later: &[
+            "blendbsdf",
+            "bumpmap",
+            "circular",
+            "hair",
+            "mask",
+            "measured",
+            "measured_polarized",
+            "normalmap",
+            "plastic",
+            "polarizer",
+            "pplastic",
+            "principled",
+            "principledthin",
+            "retarder",
+            "roughplastic",
+            "thindielectric",
+        ],
+    },
+    Plugins {
+        tag: "emitter",
+        known: &["area", "constant", "envmap", "point", "spot", "directional"],
+        later: &["directionalarea", "projector", "sunsky", "timed_sunsky"],
+    },
+    Plugins { tag: "film", known: &["hdrfilm"], later: &["specfilm"] },
+    Plugins {
+        tag: "integrator",
+        known: &["path", "volpath", "volpathmis", "direct"],
+        later: &["aov", "depth", "moment", "ptracer", "stokes"],
+    },
+    Plugins { tag: "medium", known: &["homogeneous"], later: &["heterogeneous"] },
+    Plugins { tag: "phase", known: &["isotropic", "hg"], later: &["blendphase", "rayleigh", "sggx", "tabphase"] },
+    Plugins { tag: "rfilter", known: &["box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"], later: &[] },
+    Plugins {
+        tag: "sampler",
+        known: &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"],
+        later: &[],
+    },
+    Plugins {
+        tag: "sensor",
+        known: &["perspective"],
+        later: &["batch", "distant", "irradiancemeter", "orthographic", "radiancemeter", "thinlens"],
+    },
+    Plugins {
+        tag: "shape",
+        known: &["sphere", "rectangle", "cube", "disk", "obj", "ply", "shapegroup", "instance"],
+        later: &[
+            "bsplinecurve",
+            "cylinder",
+            "ellipsoids",
+            "ellipsoidsmesh",
+            "linearcurve",
+            "merge",
+            "sdfgrid",
+            "serialized",
+        ],
+    },
+    Plugins { tag: "texture", known: &[], later: &["bitmap", "checkerboard", "mesh_attribute", "volume"] },
+    Plugins { tag: "volume", known: &[], later: &["constvolume", "gridvolume"] },
+];
+
+/// Whether an element is an object: something with plugins.
+pub(super) fn is_object(tag: &str) -> bool {
+    PLUGINS.iter().any(|plugins| plugins.tag == tag)
+}
+
+/// The plugin of an object, or an error that says whether the word is wrong or only not known yet. The parameters of an
+/// unknown plugin cannot be checked, but the plugins inside it can.
+pub(super) fn plugin(element: &Element, report: &mut Report) -> Option<&'static str> {
+    let word = element.attribute("type")?;
+    let Plugins { tag, known, later } = PLUGINS.iter().find(|plugins| plugins.tag == element.tag)?;
+    if let Some(plugin) = known.iter().find(|plugin| **plugin == word.value) {
+        return Some(plugin);
+    }
+    report.errors.push(if later.contains(&word.value.as_str()) {
+        let error = SceneError::at(word.span, format!("the {tag} \"{}\" is not known yet", word.value));
+        let known: Vec<_> = known.iter().map(|known| format!("\"{known}\"")).collect();
+        if known.is_empty() { error } else { error.help(format!("known are {}", known.join(", "))) }
+    } else {
+        let error = SceneError::at(word.span, format!("there is no {tag} \"{}\"", word.value));
+        error.suggest(&word.value, known.iter().chain(*later).copied())
+    });
+    for inside in element.children.iter().filter(|child| is_object(child.tag)) {
+        plugin(inside, report);
+    }
+    None
+}

@@ -1,0 +1,113 @@
+//! `Film` and `PixelFilter`.
+
+use super::Reader;
+use super::params::Params;
+use super::parser::Statement;
+use crate::desc::{CropDesc, FilmDesc, FilterDesc};
+use crate::error::SceneError;
+use crate::source::Span;
+
+impl FilmDesc {
+    /// The film of a file that has none.
+    pub(super) fn pbrt_default(span: Span) -> Self {
+        let filter = FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 };
+        Self { span, width: 1280, height: 720, crop: None, filename: None, filter, exposure: 1.0 }
+    }
+}
+
+/// The largest side of an image \[pixels\].
+const MAX_SIDE: u32 = 1 << 16;
+
+impl Reader {
+    pub(super) fn film(&mut self, mut s: Statement<'_>) {
+        let name = s.names[0].clone();
+        if name.value != "rgb" {
+            return self.unknown_kind("film", &name, &["rgb"], &["gbuffer", "spectral"]);
+        }
+        let mut p = self.params("film", &mut s, &[]);
+        let [width, height] = ["xresolution", "yresolution"].map(|side| {
+            let pixels = p.count(side, if side == "xresolution" { 1280 } else { 720 }, 1);
+            if pixels.value > MAX_SIDE {
+                let message = format!("an image of {} pixels a side is too large", pixels.value);
+                p.error(SceneError::at(pixels.span, message).help(format!("at most {MAX_SIDE}")));
+            }
+            pixels.value.min(MAX_SIDE)
+        });
+        let crop = crop(&mut p, width, height);
+        let filename = p.string_opt("filename");
+        let exposure = p.positive("iso", 100.0).value / 100.0;
+        p.ignore("diagonal", "the perspective camera does not depend on the size of the film");
+        p.ignore("savefp16", "images are written in single precision");
+        p.later_unless("whitebalance", 0.0);
+        p.later("maxcomponentvalue");
+        if let Some(sensor) = p.string_opt("sensor")
+            && sensor.value != "cie1931"
+        {
+            p.error(
+                SceneError::at(sensor.span, "measured sensors are not supported yet")
+                    .help("use \"cie1931\", the default"),
+            );
+        }
+        self.finish_params(p);
+        if self.settings.film.is_some() {
+            self.ignore(s.whole, "it replaces the film before");
+        }
+        let filter = FilmDesc::pbrt_default(s.whole).filter;
+        self.settings.film = Some(FilmDesc { span: s.whole, width, height, crop, filename, filter, exposure });
+    }
+
+    pub(super) fn filter(&mut self, mut s: Statement<'_>) {
+        let name = s.names[0].clone();
+        let mut p = self.params("filter", &mut s, &[]);
+        let mut radius = |default| [p.positive("xradius", default).value, p.positive("yradius", default).value];
+        let filter = match &*name.value {
+            "box" => FilterDesc::Box { radius: radius(0.5) },
+            "triangle" => FilterDesc::Triangle { radius: radius(2.0) },
+            "gaussian" => FilterDesc::Gaussian { radius: radius(1.5), sigma: p.positive("sigma", 0.5).value },
+            "mitchell" => {
+                let third = 1.0 / 3.0;
+                FilterDesc::Mitchell { radius: radius(2.0), b: p.float("B", third).value, c: p.float("C", third).value }
+            }
+            "sinc" => FilterDesc::Sinc { radius: radius(4.0), tau: p.positive("tau", 3.0).value },
+            _ => {
+                let known = ["box", "triangle", "gaussian", "mitchell", "sinc"];
+                return self.unknown_kind("filter", &name, &known, &[]);
+            }
+        };
+        self.finish_params(p);
+        self.settings.filter = Some(filter);
+    }
+}
+
+/// The part of the film that is rendered: `cropwindow` in parts of the image, or `pixelbounds`; the first wins.
+fn crop(p: &mut Params, width: u32, height: u32) -> Option<CropDesc> {
+    let bounds = p.integers("pixelbounds", 4);
+    let window = p.floats("cropwindow", 4);
+    let (crop, span) = match (window, bounds) {
+        (Some(w), _) => {
+            // pbrt takes the pixels from ceil(start) to ceil(end), whichever of the two is smaller.
+            let pixel = |a: f64, side: u32| (a.clamp(0.0, 1.0) * f64::from(side)).ceil() as u32;
+            let ordered = |a: f64, b: f64, side| (pixel(a.min(b), side), pixel(a.max(b), side));
+            let ((x0, x1), (y0, y1)) =
+                (ordered(w.value[0], w.value[1], width), ordered(w.value[2], w.value[3], height));
+            (CropDesc { x0, y0, x1, y1 }, w.span)
+        }
+        (None, Some(b)) => {
+            let pixel = |a: f64, side: u32| a.clamp(0.0, f64::from(side)) as u32;
+            let v = &b.value;
+            let crop = CropDesc {
+                x0: pixel(v[0], width),
+                x1: pixel(v[1], width),
+                y0: pixel(v[2], height),
+                y1: pixel(v[3], height),
+            };
+            (crop, b.span)
+        }
+        (None, None) => return None,
+    };
+    if crop.x0 >= crop.x1 || crop.y0 >= crop.y1 {
+        p.error(SceneError::at(span, "this part of the image is empty").help("it is [ x_min x_max y_min y_max ]"));
+        return None;
+    }
+    Some(crop)
+}

@@ -1,0 +1,133 @@
+//! `Material`, `MakeNamedMaterial` and `NamedMaterial`.
+
+use std::borrow::Cow;
+
+use super::Reader;
+use super::params::Params;
+use super::parser::Statement;
+use crate::desc::{
+    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc,
+};
+use crate::error::SceneError;
+use crate::source::{Span, Spanned};
+
+const MATERIALS: [&str; 4] = ["diffuse", "conductor", "dielectric", "interface"];
+const LATER_MATERIALS: [&str; 8] = [
+    "coatedconductor",
+    "coateddiffuse",
+    "diffusetransmission",
+    "hair",
+    "measured",
+    "mix",
+    "subsurface",
+    "thindielectric",
+];
+
+impl MaterialDesc {
+    /// The material of shapes before any `Material`.
+    pub(super) fn pbrt_default(span: Span) -> Self {
+        let reflectance = Spanned::new(SpectrumDesc::Constant(0.5), span);
+        Self { span, name: None, kind: MaterialKind::Diffuse { reflectance }, two_sided: true }
+    }
+}
+
+impl Reader {
+    pub(super) fn material(&mut self, mut s: Statement<'_>) {
+        let name = s.names[0].clone();
+        let defaults = self.state.now.defaults.material.clone();
+        let p = self.params("material", &mut s, &defaults);
+        let desc = self.material_of(s.whole, None, &name, p);
+        let id = MaterialId(self.materials.push(s.whole, desc));
+        self.state.now.material = Some(Spanned::new(id, s.whole));
+    }
+
+    pub(super) fn named_material(&mut self, mut s: Statement<'_>) {
+        let name = s.names[0].clone();
+        let defaults = self.state.now.defaults.material.clone();
+        let mut p = self.params("material", &mut s, &defaults);
+        let kind = p.string_opt("type").map(|kind| kind.map(Cow::Owned));
+        if kind.is_none() {
+            p.error(
+                SceneError::at(name.span, "a named material needs \"string type\"").help("\"string type\" \"diffuse\""),
+            );
+        }
+        let kind = kind.unwrap_or(Spanned::new("interface".into(), name.span));
+        let desc = self.material_of(s.whole, Some(name.value.to_string()), &kind, p);
+        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(drop));
+    }
+
+    pub(super) fn use_material(&mut self, name: &Spanned<Cow<'_, str>>) {
+        let id = MaterialId(self.materials.refer(&name.value, name.span));
+        self.state.now.material = Some(Spanned::new(id, name.span));
+    }
+
+    /// What the parameters make of a kind. A kind that is not known is reported and stands in as the default material.
+    fn material_of(
+        &mut self,
+        span: Span,
+        name: Option<String>,
+        kind: &Spanned<Cow<'_, str>>,
+        mut p: Params,
+    ) -> MaterialDesc {
+        let made = match &*kind.value {
+            "diffuse" => diffuse(&mut p),
+            "conductor" => conductor(&mut p),
+            "dielectric" => dielectric(&mut p),
+            "interface" | "none" | "" => MaterialKind::Interface,
+            _ => {
+                self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
+                return MaterialDesc { name, ..MaterialDesc::pbrt_default(span) };
+            }
+        };
+        p.later("displacement");
+        p.later("normalmap");
+        self.finish_params(p);
+        MaterialDesc { span, name, kind: made, two_sided: true }
+    }
+}
+
+fn diffuse(p: &mut Params) -> MaterialKind {
+    MaterialKind::Diffuse { reflectance: p.spectrum("reflectance", SpectrumDesc::Constant(0.5)) }
+}
+
+fn conductor(p: &mut Params) -> MaterialKind {
+    let reflectance = p.spectrum_opt("reflectance");
+    let given = [p.spectrum_opt("eta"), p.spectrum_opt("k")];
+    let optics = match (reflectance, given) {
+        (Some(reflectance), [None, None]) => ConductorOptics::Reflectance(reflectance),
+        (Some(reflectance), _) => {
+            p.error(
+                SceneError::at(reflectance.span, "a conductor has either \"reflectance\" or \"eta\" and \"k\"")
+                    .help("leave out one of them"),
+            );
+            ConductorOptics::Reflectance(reflectance)
+        }
+        (None, [eta, k]) => {
+            let copper = |which: &str| Spanned::new(SpectrumDesc::Named(which.into()), p.span);
+            ConductorOptics::EtaK {
+                eta: eta.unwrap_or_else(|| copper("metal-Cu-eta")),
+                k: k.unwrap_or_else(|| copper("metal-Cu-k")),
+            }
+        }
+    };
+    MaterialKind::Conductor { optics, roughness: roughness(p), tint: None }
+}
+
+fn dielectric(p: &mut Params) -> MaterialKind {
+    MaterialKind::Dielectric {
+        eta: p.spectrum_or_float("eta", SpectrumDesc::Constant(1.5)),
+        roughness: roughness(p),
+        reflection_tint: None,
+        transmission_tint: None,
+    }
+}
+
+fn roughness(p: &mut Params) -> RoughnessDesc {
+    let both = p.not_negative("roughness", 0.0).value;
+    RoughnessDesc {
+        u: p.not_negative("uroughness", both).value,
+        v: p.not_negative("vroughness", both).value,
+        remap: p.boolean("remaproughness", true).value,
+        distribution: MicrofacetKind::Ggx,
+    }
+}

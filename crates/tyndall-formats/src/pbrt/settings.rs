@@ -1,0 +1,175 @@
+//! `Option`, `Sampler` and `Integrator`, and the settings of the scene as they come in.
+
+use super::Reader;
+use super::params::quote;
+use super::parser::Statement;
+use crate::desc::{CameraDesc, FilmDesc, FilterDesc, IntegratorDesc, LengthUnit, Options, SamplerDesc};
+use crate::error::{ErrorList, SceneError};
+use crate::source::{Span, Spanned};
+
+/// Settings that the file has made so far.
+#[derive(Debug, Default)]
+pub(super) struct Settings {
+    /// Where the world begins.
+    pub(super) world: Option<Span>,
+    pub(super) camera: Option<CameraDesc>,
+    /// Time that the shutter is open, which is a factor on the image.
+    pub(super) shutter: Option<f64>,
+    pub(super) film: Option<FilmDesc>,
+    pub(super) filter: Option<FilterDesc>,
+    sampler: Option<SamplerDesc>,
+    integrator: Option<IntegratorDesc>,
+    unit: Option<Spanned<LengthUnit>>,
+    seed: Option<Spanned<u64>>,
+}
+
+/// Settings with pbrt's defaults in place of what the file leaves out.
+#[derive(Debug)]
+pub(super) struct AllSettings {
+    pub(super) options: Options,
+    pub(super) camera: CameraDesc,
+    pub(super) film: FilmDesc,
+    pub(super) sampler: SamplerDesc,
+    pub(super) integrator: IntegratorDesc,
+}
+
+impl Settings {
+    pub(super) fn finish(self, start: Span, errors: &mut ErrorList) -> AllSettings {
+        if self.world.is_none() {
+            errors.push(
+                SceneError::at(start, "the scene has no WorldBegin")
+                    .help("write WorldBegin between the camera and the first shape"),
+            );
+        }
+        let mut film = self.film.unwrap_or_else(|| FilmDesc::pbrt_default(start));
+        film.filter = self.filter.unwrap_or(film.filter);
+        film.exposure *= self.shutter.unwrap_or(1.0);
+        let named = |name: &str| Spanned::new(name.to_string(), start);
+        AllSettings {
+            options: Options {
+                unit: self.unit.unwrap_or(Spanned::new(LengthUnit::Millimetre, start)),
+                seed: self.seed,
+            },
+            camera: self.camera.unwrap_or_else(|| CameraDesc::pbrt_default(start)),
+            film,
+            sampler: self.sampler.unwrap_or_else(|| SamplerDesc {
+                kind: named("zsobol"),
+                spp: Spanned::new(16, start),
+                seed: None,
+            }),
+            integrator: self.integrator.unwrap_or_else(|| IntegratorDesc {
+                name: named("volpath"),
+                max_depth: None,
+                rr_depth: None,
+                hide_emitters: false,
+            }),
+        }
+    }
+}
+
+/// Options of pbrt that change nothing here.
+const IGNORED_OPTIONS: [(&str, &str); 5] = [
+    ("disabletexturefiltering", "there are no textures to filter"),
+    ("displacementedgescale", "there is no displacement"),
+    ("pixelstats", "statistics are asked for on the command line"),
+    ("rendercoordsys", "all spaces are one: tyndall's error bounds do not need a camera-relative space"),
+    ("wavefront", "tyndall has one way to run"),
+];
+
+/// Options of pbrt that would change the image.
+const LATER_OPTIONS: [&str; 5] =
+    ["disablepixeljitter", "disablewavelengthjitter", "forcediffuse", "msereferenceimage", "msereferenceout"];
+
+/// Samplers of pbrt. tyndall has its own.
+const SAMPLERS: [&str; 7] = ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"];
+
+/// Integrators that are mapped to ours.
+const INTEGRATORS: [&str; 4] = ["path", "volpath", "simplepath", "simplevolpath"];
+/// Integrators of pbrt that have no counterpart here.
+const LATER_INTEGRATORS: [&str; 8] =
+    ["ambientocclusion", "bdpt", "function", "lightpath", "mlt", "randomwalk", "sppm", "simplebdpt"];
+
+impl Reader {
+    pub(super) fn option(&mut self, s: &Statement<'_>) {
+        // "string unit" and "unit" are both in use; pbrt takes no notice of case and underlines.
+        let name = &s.names[0];
+        let word = name.value.split_ascii_whitespace().next_back().unwrap_or("").replace('_', "").to_lowercase();
+        match &*word {
+            "unit" => self.unit(s),
+            "seed" => match s.numbers.first() {
+                Some(&seed) if seed >= 0.0 && seed.fract() == 0.0 && seed < 2f64.powi(53) => {
+                    self.settings.seed = Some(Spanned::new(seed as u64, s.whole));
+                }
+                _ => self.errors.push(SceneError::at(s.whole, "the seed must be an integer of at least 0")),
+            },
+            _ if LATER_OPTIONS.contains(&&*word) => {
+                // What is switched off changes nothing.
+                if s.names.get(1).is_some_and(|v| v.value == "false") {
+                    return self.ignore(s.whole, "it is off anyway");
+                }
+                let message = format!("the option {} is not supported yet", quote(&word));
+                self.errors.push(SceneError::at(s.whole, message).help("leave it out"));
+            }
+            _ => {
+                if let Some((_, reason)) = IGNORED_OPTIONS.into_iter().find(|(known, _)| *known == word) {
+                    return self.ignore(s.whole, reason);
+                }
+                let known = ["unit", "seed"].into_iter().chain(IGNORED_OPTIONS.map(|o| o.0)).chain(LATER_OPTIONS);
+                let error = SceneError::at(name.span, format!("there is no option {}", quote(&name.value)));
+                self.errors.push(error.suggest(&word, known));
+            }
+        }
+    }
+
+    fn unit(&mut self, s: &Statement<'_>) {
+        let word = s.names.get(1).map_or("", |v| &v.value);
+        if let Some(unit) = LengthUnit::parse(word) {
+            self.settings.unit = Some(Spanned::new(unit, s.whole));
+            return;
+        }
+        let known = LengthUnit::ALL.map(|u| quote(u.0)).join(", ");
+        let error = SceneError::at(s.whole, format!("there is no unit of length {}", quote(word)));
+        self.errors.push(error.help(format!("known are {known}")));
+    }
+
+    pub(super) fn sampler(&mut self, mut s: Statement<'_>) {
+        let name = s.names[0].clone();
+        if !SAMPLERS.contains(&&*name.value) {
+            return self.unknown_kind("sampler", &name, &SAMPLERS, &[]);
+        }
+        let mut p = self.params("sampler", &mut s, &[]);
+        let spp = if name.value == "stratified" {
+            let (x, y) = (p.count("xsamples", 4, 1), p.count("ysamples", 4, 1));
+            p.ignore("jitter", "samples are always jittered");
+            x.map(|x| x.saturating_mul(y.value))
+        } else {
+            p.count("pixelsamples", 16, 1)
+        };
+        let seed = p.count_opt("seed", 0).map(|seed| seed.map(u64::from));
+        p.ignore("randomization", "tyndall has its own sampler");
+        self.finish_params(p);
+        self.settings.sampler = Some(SamplerDesc { kind: name.map(Into::into), spp, seed });
+    }
+
+    pub(super) fn integrator(&mut self, mut s: Statement<'_>) {
+        let name = s.names[0].clone();
+        if !INTEGRATORS.contains(&&*name.value) {
+            return self.unknown_kind("integrator", &name, &INTEGRATORS, &LATER_INTEGRATORS);
+        }
+        let mut p = self.params("integrator", &mut s, &[]);
+        let max_depth = p.count_opt("maxdepth", 0);
+        p.ignore("lightsampler", "tyndall chooses lights in its own way");
+        if p.boolean("regularize", false).value {
+            p.error(
+                SceneError::at(p.span, "regularised paths are not supported: they change the image")
+                    .help("leave out \"bool regularize\""),
+            );
+        }
+        p.ignore("samplelights", "light sampling never changes the mean");
+        p.ignore("samplebsdf", "how directions are sampled never changes the mean");
+        self.finish_params(p);
+        let (rr_depth, hide_emitters) = (None, false);
+        self.settings.integrator =
+            Some(IntegratorDesc { name: name.map(Into::into), max_depth, rr_depth, hide_emitters });
+    }
+}

@@ -1,0 +1,173 @@
+//! `Shape`.
+
+use super::Reader;
+use super::param::ParamType;
+use super::params::Params;
+use super::parser::Statement;
+use crate::desc::{MaterialDesc, MaterialId, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
+use crate::error::SceneError;
+use crate::source::Spanned;
+
+const SHAPES: [&str; 5] = ["sphere", "disk", "trianglemesh", "bilinearmesh", "plymesh"];
+const LATER_SHAPES: [&str; 3] = ["curve", "cylinder", "loopsubdiv"];
+
+impl Reader {
+    pub(super) fn shape(&mut self, mut s: Statement<'_>) {
+        let name = s.names[0].clone();
+        if !SHAPES.contains(&&*name.value) {
+            return self.unknown_kind("shape", &name, &SHAPES, &LATER_SHAPES);
+        }
+        let defaults = self.state.now.defaults.shape.clone();
+        let mut p = self.params("shape", &mut s, &defaults);
+        let kind = match &*name.value {
+            "sphere" => Some(sphere(&mut p)),
+            "disk" => Some(disk(&mut p)),
+            "trianglemesh" => triangles(&mut p).map(ShapeKind::TriangleMesh),
+            "bilinearmesh" => patches(&mut p).map(ShapeKind::BilinearMesh),
+            _ => ply(&mut p),
+        };
+        p.later_unless("alpha", 1.0);
+        self.finish_params(p);
+        if let Some(kind) = kind {
+            let shape = self.bound(&s, kind);
+            self.place(shape);
+        }
+    }
+
+    /// A shape with what the graphics state binds to it.
+    fn bound(&mut self, s: &Statement<'_>, kind: ShapeKind) -> ShapeDesc {
+        let material = match self.state.now.material {
+            Some(material) => material,
+            None => self.default_material(s),
+        };
+        let now = &self.state.now;
+        // pbrt turns the normals of its quadrics round under a mirroring matrix; our natural normal stays outside.
+        let quadric = matches!(kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. });
+        let mirrored = quadric && now.ctm.determinant() < 0.0;
+        ShapeDesc {
+            span: s.whole,
+            name: None,
+            kind,
+            to_world: now.ctm,
+            reverse_orientation: now.reverse_orientation ^ mirrored,
+            material,
+            emission: now.area_light.as_deref().cloned(),
+            interface: now.interface,
+        }
+    }
+
+    /// A shape before any `Material` is of pbrt's default one.
+    fn default_material(&mut self, s: &Statement<'_>) -> Spanned<MaterialId> {
+        let id = match self.default_material {
+            Some(id) => id,
+            None => MaterialId(self.materials.push(s.span, MaterialDesc::pbrt_default(s.span))),
+        };
+        self.default_material = Some(id);
+        Spanned::new(id, s.span)
+    }
+
+    /// Puts a shape into the world, or into the object that is being defined.
+    fn place(&mut self, shape: ShapeDesc) {
+        let Some((group, _)) = self.group else { return self.shapes.push(shape) };
+        if let Some(light) = &shape.emission {
+            self.errors.push(
+                SceneError::at(shape.span, "shapes of an object cannot emit light")
+                    .help("place the light outside of ObjectBegin and ObjectEnd")
+                    .related(light.span, "this makes it emit"),
+            );
+        }
+        if let Some(group) = self.groups.get_mut(group) {
+            group.shapes.push(shape);
+        }
+    }
+}
+
+fn sphere(p: &mut Params) -> ShapeKind {
+    let radius = p.positive("radius", 1.0).value;
+    let (low, high) = (p.float("zmin", -radius), p.float("zmax", radius));
+    for cut in [low, high].into_iter().filter(|z| z.value.abs() < radius) {
+        p.error(
+            SceneError::at(cut.span, "parts of spheres are not supported yet").help("leave out \"zmin\" and \"zmax\""),
+        );
+    }
+    p.later_unless("phimax", 360.0);
+    ShapeKind::Sphere { radius }
+}
+
+fn disk(p: &mut Params) -> ShapeKind {
+    let radius = p.positive("radius", 1.0).value;
+    let height = p.float("height", 0.0).value;
+    let inner = p.not_negative("innerradius", 0.0);
+    if inner.value >= radius {
+        p.error(SceneError::at(inner.span, "\"innerradius\" must be less than \"radius\""));
+    }
+    p.later_unless("phimax", 360.0);
+    ShapeKind::Disk { height, radius, inner_radius: inner.value }
+}
+
+/// What triangles and patches have in common: corners, and one normal and one coordinate for each or none.
+struct Corners {
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+}
+
+fn corners(p: &mut Params, least: usize) -> Option<Corners> {
+    let positions = p.tuples::<3>("P", &[ParamType::Point3]);
+    let normals = p.tuples::<3>("N", &[ParamType::Normal3]);
+    let uvs = p.tuples::<2>("uv", &[ParamType::Point2]);
+    p.ignore("faceIndices", "only face textures read them");
+    let count = positions.value.len();
+    if count < least {
+        let message = format!("a mesh needs \"point3 P\" with at least {least} points, and this one has {count}");
+        p.error(SceneError::at(positions.span, message));
+        p.skip("indices");
+        return None;
+    }
+    for (name, found, span) in [("N", normals.value.len(), normals.span), ("uv", uvs.value.len(), uvs.span)] {
+        if found != 0 && found != count {
+            let message = format!("\"{name}\" has {found} values for {count} points");
+            p.error(SceneError::at(span, message).help(format!("give one \"{name}\" for each point")));
+            p.skip("indices");
+            return None;
+        }
+    }
+    Some(Corners { positions: positions.value, normals: normals.value, uvs: uvs.value })
+}
+
+/// Faces; without "indices" the points are one face.
+fn faces<const N: usize>(p: &mut Params, count: usize, single: [u32; N]) -> Option<Vec<[u32; N]>> {
+    if p.has("indices") {
+        return p.indices("indices", count);
+    }
+    if count == N {
+        return Some(vec![single]);
+    }
+    p.error(SceneError::at(p.span, format!("a mesh of {count} points needs \"integer indices\"")));
+    None
+}
+
+fn triangles(p: &mut Params) -> Option<MeshDesc> {
+    p.ignore("S", "only anisotropic surfaces read tangents, and they follow uv");
+    let Corners { positions, normals, uvs } = corners(p, 3)?;
+    let indices = faces(p, positions.len(), [0, 1, 2])?;
+    Some(MeshDesc { positions, indices, normals, uvs })
+}
+
+fn patches(p: &mut Params) -> Option<PatchDesc> {
+    p.later("emissionfilename");
+    let Corners { positions, normals, uvs } = corners(p, 4)?;
+    let indices = faces(p, positions.len(), [0, 1, 2, 3])?;
+    Some(PatchDesc { positions, indices, normals, uvs })
+}
+
+fn ply(p: &mut Params) -> Option<ShapeKind> {
+    p.later("displacement");
+    p.ignore("edgelength", "only displacement reads it");
+    let Some(file) = p.string_opt("filename") else {
+        p.error(SceneError::at(p.span, "a plymesh needs \"string filename\""));
+        return None;
+    };
+    let path = file.map(|name| p.resolve(&name));
+    Some(ShapeKind::Ply { path, face_normals: false, smooth_normals: false, flip_tex_coords: false })
+}

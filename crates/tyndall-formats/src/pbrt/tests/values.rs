@@ -1,0 +1,237 @@
+//! Defaults, scopes, transformations, references and includes.
+
+use std::path::PathBuf;
+
+use glam::{DMat4, DVec3};
+
+use super::{parse, scene, world};
+use crate::desc::{
+    Coefficients, ConductorOptics, CropDesc, EnvironmentMapping, FilterDesc, FovAxis, LengthUnit, LightKind, Magnitude,
+    MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc,
+};
+use crate::load;
+
+#[test]
+fn an_empty_world_has_the_defaults_of_pbrt() {
+    let desc = world("");
+    assert_eq!((desc.film.width, desc.film.height, desc.film.crop, desc.film.exposure), (1280, 720, None, 1.0));
+    assert_eq!(desc.film.filter, FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 });
+    assert_eq!((desc.camera.fov.value, desc.camera.fov_axis), (90.0, FovAxis::Smaller));
+    assert_eq!(desc.camera.to_world, DMat4::IDENTITY);
+    assert_eq!(desc.sampler.spp.value, 16);
+    assert_eq!((&*desc.integrator.name.value, desc.integrator.max_depth), ("volpath", None));
+    assert_eq!(desc.options.unit.value, LengthUnit::Millimetre);
+}
+
+#[test]
+fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
+    let desc = world(
+        r#"Shape "sphere" Shape "disk"
+        Material "diffuse" Material "conductor" Material "dielectric" Material "interface"
+        MakeNamedMedium "m" "string type" "homogeneous"
+        LightSource "point" LightSource "spot" LightSource "distant" LightSource "infinite"
+        LightSource "infinite" "string filename" "sky.exr" "float scale" 2"#,
+    );
+    assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 1.0 });
+    assert_eq!(desc.shapes[1].kind, ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0 });
+    // The material of shapes before any Material comes first.
+    let [default, diffuse, conductor, dielectric, interface] = &desc.materials[..] else { panic!() };
+    for material in [default, diffuse] {
+        let MaterialKind::Diffuse { reflectance } = &material.kind else { panic!() };
+        assert_eq!((&reflectance.value, material.two_sided), (&SpectrumDesc::Constant(0.5), true));
+    }
+    let MaterialKind::Conductor { optics: ConductorOptics::EtaK { eta, k }, .. } = &conductor.kind else { panic!() };
+    assert_eq!(eta.value, SpectrumDesc::Named("metal-Cu-eta".into()));
+    assert_eq!(k.value, SpectrumDesc::Named("metal-Cu-k".into()));
+    let MaterialKind::Dielectric { eta, roughness, .. } = &dielectric.kind else { panic!() };
+    assert_eq!((&eta.value, roughness.alpha()), (&SpectrumDesc::Constant(1.5), [0.0, 0.0]));
+    assert_eq!(interface.kind, MaterialKind::Interface);
+
+    let medium = &desc.media[0];
+    let Coefficients::AbsorptionScattering { sigma_a, sigma_s } = &medium.coefficients else { panic!() };
+    assert_eq!((&sigma_a.value, &sigma_s.value), (&SpectrumDesc::Constant(1.0), &SpectrumDesc::Constant(1.0)));
+    assert_eq!((medium.phase, medium.scale.value, &medium.emission), (PhaseDesc::Isotropic, 1.0, &None));
+
+    let [point, spot, distant, constant, sky] = &desc.lights[..] else { panic!() };
+    let LightKind::Point { intensity } = &point.kind else { panic!() };
+    assert_eq!((&intensity.spectrum.value, intensity.scale), (&SpectrumDesc::Rgb([1.0; 3]), 1.0));
+    assert_eq!(intensity.magnitude, Magnitude::UnitLuminance);
+    assert!(matches!(spot.kind, LightKind::Spot { cutoff: 30.0, beam: 25.0, .. }));
+    for light in [point, spot, distant] {
+        assert_eq!(light.to_world.transform_point3(DVec3::ZERO), DVec3::ZERO);
+        assert_eq!(light.to_world.transform_vector3(DVec3::Z), DVec3::Z);
+    }
+    assert!(matches!(constant.kind, LightKind::Constant { .. }));
+    let LightKind::Environment { path, scale, mapping } = &sky.kind else { panic!() };
+    assert_eq!((path.value.to_str(), *scale), (Some("sky.exr"), 2.0));
+    assert_eq!(*mapping, EnvironmentMapping::EqualAreaOctahedral);
+}
+
+#[test]
+fn scopes_restore_everything() {
+    let desc = world(
+        r#"Material "interface"
+        AttributeBegin
+          Translate 1 2 3 Scale 2 2 2 ReverseOrientation
+          AreaLightSource "diffuse" MediumInterface "fog"
+          Material "dielectric"
+          Shape "sphere"
+        AttributeEnd
+        Shape "sphere"
+        MakeNamedMedium "fog" "string type" "homogeneous""#,
+    );
+    let [inner, outer] = &desc.shapes[..] else { panic!() };
+    assert_eq!(inner.to_world.transform_point3(DVec3::X), DVec3::new(3.0, 2.0, 3.0));
+    assert!(inner.reverse_orientation && inner.emission.is_some());
+    // One name stands for both sides, and the medium is defined after its use.
+    let interface = inner.interface.unwrap();
+    assert_eq!((interface.inside.map(|m| m.0), interface.outside.map(|m| m.0)), (Some(0), Some(0)));
+    assert_eq!((outer.to_world, outer.reverse_orientation), (DMat4::IDENTITY, false));
+    assert_eq!((&outer.emission, outer.interface, outer.material.value.0), (&None, None, 0));
+}
+
+#[test]
+fn matrices_are_written_column_by_column_and_named_spaces_recalled() {
+    let desc = scene(
+        r#"LookAt 0 0 -5  0 0 0  0 1 0
+        Camera "perspective"
+        WorldBegin
+        Transform [ 1 0 0 0  0 1 0 0  0 0 1 0  7 8 9 1 ]
+        CoordinateSystem "here"
+        ConcatTransform [ 2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 1 ]
+        Shape "sphere"
+        CoordSysTransform "here" Shape "sphere"
+        CoordSysTransform "camera" Shape "sphere"
+        Identity Shape "sphere""#,
+    );
+    let origin = |i: usize| desc.shapes[i].to_world.transform_point3(DVec3::X);
+    assert_eq!(origin(0), DVec3::new(9.0, 8.0, 9.0));
+    assert_eq!(origin(1), DVec3::new(8.0, 8.0, 9.0));
+    assert_eq!(origin(2), DVec3::new(1.0, 0.0, -5.0));
+    assert_eq!(origin(3), DVec3::X);
+}
+
+/// Right-handed scenes put a mirror before LookAt: +x of the world then shows on the left when seen along +z.
+#[test]
+fn a_mirror_before_the_camera_mirrors_the_image() {
+    let camera = scene("Scale -1 1 1 LookAt 0 0 -5 0 0 0 0 1 0 Camera \"perspective\" WorldBegin").camera;
+    assert_eq!(camera.to_world.transform_vector3(DVec3::X), -DVec3::X);
+    assert_eq!(camera.to_world.transform_vector3(DVec3::Z), DVec3::Z);
+    assert!(camera.to_world.determinant() < 0.0);
+}
+
+/// pbrt: a quadric under a mirror has its normal turned round, a mesh has not; ReverseOrientation turns either again.
+#[test]
+fn a_mirror_turns_quadrics_inside_out_and_meshes_not() {
+    let mesh = r#"Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ]"#;
+    let desc = world(&format!("Scale -1 1 1 Shape \"sphere\" {mesh} ReverseOrientation Shape \"sphere\" {mesh}"));
+    let reversed: Vec<_> = desc.shapes.iter().map(|s| s.reverse_orientation).collect();
+    assert_eq!(reversed, [true, false, false, true]);
+}
+
+#[test]
+fn a_mesh_keeps_its_numbers_and_three_points_need_no_indices() {
+    let desc = world(
+        r#"Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "normal N" [ 0 0 1 0 0 1 0 0 1 ]
+           "point2 uv" [ 0 0 1 0 0 1 ] "integer indices" [ 2 1 0 ]
+        Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ]"#,
+    );
+    let ShapeKind::TriangleMesh(mesh) = &desc.shapes[0].kind else { panic!() };
+    let expected = MeshDesc {
+        positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        indices: vec![[2, 1, 0]],
+        normals: vec![[0.0, 0.0, 1.0]; 3],
+        uvs: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+    };
+    assert_eq!(*mesh, expected);
+    let ShapeKind::TriangleMesh(mesh) = &desc.shapes[1].kind else { panic!() };
+    assert_eq!(mesh.indices, [[0, 1, 2]]);
+}
+
+#[test]
+fn spectra_keep_the_form_in_which_they_were_written() {
+    let desc = world(
+        r#"Material "diffuse" "spectrum reflectance" [ 400 .1 700 .9 ]
+        Material "dielectric" "spectrum eta" "glass-BK7"
+        Material "diffuse" "spectrum reflectance" "skin.spd"
+        MakeNamedMaterial "gold" "string type" "conductor" "rgb reflectance" [ 1 .8 .3 ] "float roughness" .2
+            "bool remaproughness" false
+        NamedMaterial "gold" Shape "sphere""#,
+    );
+    let reflectance = |i: usize| match &desc.materials[i].kind {
+        MaterialKind::Diffuse { reflectance } => reflectance.value.clone(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(reflectance(0), SpectrumDesc::Samples { lambda: vec![400.0, 700.0], values: vec![0.1, 0.9] });
+    assert_eq!(reflectance(2), SpectrumDesc::File(PathBuf::from("skin.spd")));
+    let MaterialKind::Dielectric { eta, .. } = &desc.materials[1].kind else { panic!() };
+    assert_eq!(eta.value, SpectrumDesc::Named("glass-BK7".into()));
+    let gold = desc.material(desc.shapes[0].material.value).unwrap();
+    assert_eq!(gold.name.as_deref(), Some("gold"));
+    let MaterialKind::Conductor { roughness, .. } = &gold.kind else { panic!() };
+    assert_eq!(roughness.alpha(), [0.2, 0.2]);
+}
+
+#[test]
+fn attribute_sets_defaults_that_a_shape_may_override_and_need_not_use() {
+    let desc = world(
+        r#"AttributeBegin
+        Attribute "shape" "float radius" 3 "string nobody" "knows"
+        Shape "sphere" Shape "sphere" "float radius" 4
+        AttributeEnd
+        Shape "sphere""#,
+    );
+    let radii: Vec<_> = desc.shapes.iter().map(|s| s.kind.clone()).collect();
+    assert_eq!(radii, [3.0, 4.0, 1.0].map(|radius| ShapeKind::Sphere { radius }));
+}
+
+#[test]
+fn film_crop_and_exposure_are_those_of_pbrt() {
+    let film = |text: &str| scene(&format!("{text} WorldBegin")).film;
+    let crop =
+        film(r#"Film "rgb" "integer xresolution" 100 "integer yresolution" 50 "float cropwindow" [ .255 .5 0 1 ]"#)
+            .crop;
+    assert_eq!(crop, Some(CropDesc { x0: 26, x1: 50, y0: 0, y1: 50 }));
+    let crop = film(r#"Film "rgb" "integer pixelbounds" [ 10 20 30 4000 ]"#).crop;
+    assert_eq!(crop, Some(CropDesc { x0: 10, x1: 20, y0: 30, y1: 720 }));
+    let exposure = film(r#"Camera "perspective" "float shutterclose" .5 Film "rgb" "float iso" 200"#).exposure;
+    assert_eq!(exposure, 1.0);
+}
+
+#[test]
+fn the_unit_of_length_is_an_option() {
+    let unit = |text: &str| scene(&format!("{text} WorldBegin")).options.unit.value;
+    assert_eq!(unit(r#"Option "string unit" "um""#), LengthUnit::Micrometre);
+    assert_eq!(unit(r#"Option "unit" "m""#).millimetres(), 1000.0);
+}
+
+#[test]
+fn words_without_effect_are_kept_with_the_reason() {
+    let text = "Accelerator \"bvh\"\nIntegrator \"path\" \"string lightsampler\" \"power\"\nWorldBegin";
+    let (desc, sources) = parse("scene.pbrt".as_ref(), text).unwrap();
+    let found: Vec<_> = desc.ignored.iter().map(|i| sources.snippet(i.span)).collect();
+    assert_eq!(found, ["Accelerator \"bvh\"", "\"string lightsampler\" \"power\""]);
+    assert!(desc.ignored.iter().all(|i| !i.reason.is_empty()));
+}
+
+#[test]
+fn an_include_stands_for_its_file_relative_to_the_scene() {
+    let dir = std::env::temp_dir().join(format!("tyndall-include-{}", std::process::id()));
+    std::fs::create_dir_all(dir.join("parts")).unwrap();
+    let write = |name: &str, text: &str| std::fs::write(dir.join(name), text).unwrap();
+    write("scene.pbrt", "WorldBegin\nInclude \"parts/ball.pbrt\"\nInclude \"parts/ball.pbrt\"\n");
+    write("parts/ball.pbrt", "Translate 1 0 0\nShape \"plymesh\" \"string filename\" \"parts/ball.ply\"\n");
+    let loaded = load(&dir.join("scene.pbrt"), &[]);
+    write("loop.pbrt", "WorldBegin\nInclude \"parts/loop.pbrt\"\n");
+    write("parts/loop.pbrt", "Include \"parts/../loop.pbrt\"\n");
+    let looped = load(&dir.join("loop.pbrt"), &[]);
+    std::fs::remove_dir_all(&dir).unwrap();
+
+    let (desc, sources) = loaded.unwrap();
+    assert_eq!(desc.shapes[1].to_world.w_axis.x, 2.0, "an include is no scope");
+    let ShapeKind::Ply { path, .. } = &desc.shapes[0].kind else { panic!() };
+    assert_eq!(path.value, dir.join("parts/ball.ply"));
+    assert!(sources.place(path.span).ends_with("ball.pbrt:2:35"), "{}", sources.place(path.span));
+    let message = looped.unwrap_err().errors[0].message.clone();
+    assert!(message.ends_with("loop.pbrt includes itself"), "{message}");
+}

@@ -1,0 +1,154 @@
+//! The naive twin: one wavelength at a time, absorption by chance, no weights in media, no multiple importance
+//! sampling. Slow, obvious, and right: what [`super::VolPath`] must agree with.
+//!
+//! Lights that a path can run into are found only by running into them. Dirac lights, which no path can run into, are
+//! gathered at each vertex.
+
+use super::Integrator;
+use crate::{
+    light::Light,
+    material::Material,
+    math::{Ray, Vec2},
+    medium::{Inside, MediumInterface},
+    path::{Vertex, shadow},
+    sampling::Sampler,
+    scene::Scene,
+    spectrum::{ColorMode, Lanes, Wavelengths},
+    tally::Tally,
+};
+
+/// The analog estimator.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Analog;
+
+impl Integrator for Analog {
+    fn li(
+        &self,
+        scene: &Scene,
+        ray: Ray,
+        wavelengths: Wavelengths,
+        u_hero: f32,
+        sampler: &mut Sampler,
+        tally: &mut Tally,
+    ) -> Lanes {
+        // One lane a path stands for all of them. (The fourth lane of `rgb` is never looked at by the film.)
+        let lanes = match scene.color {
+            ColorMode::Rgb => 3,
+            ColorMode::Mono => return Lanes::splat(walk(scene, ray, &wavelengths, 0, sampler, tally)),
+            ColorMode::Spectral => 4,
+        };
+        let lane = ((u_hero * lanes as f32) as usize).min(lanes - 1);
+        let mut radiance = [0.0; 4];
+        radiance[lane] = lanes as f32 * walk(scene, ray, &wavelengths, lane, sampler, tally);
+        Lanes::new(radiance)
+    }
+}
+
+/// The radiance along `ray` in one lane.
+fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut Sampler, tally: &mut Tally) -> f32 {
+    let mut inside = Inside::of(scene, scene.camera.medium, w);
+    let (mut radiance, mut throughput) = (0.0, 1.0);
+    loop {
+        let (sigma_t, sigma_s) =
+            inside.coefficients().map_or((0.0, 0.0), |c| (c.sigma_t.lane(lane), c.sigma_s.lane(lane)));
+        let flight = if sigma_t > 0.0 { -sampler.rng.next_positive().ln() / sigma_t } else { f32::INFINITY };
+        tally.rays += 1;
+        let hit = scene.geometry.intersect(&ray, flight);
+
+        let (vertex, interface) = match hit {
+            None if flight.is_finite() => {
+                tally.collisions += 1;
+                if sampler.next_1d() * sigma_t >= sigma_s {
+                    return radiance; // absorbed
+                }
+                let Inside::Medium { phase, .. } = inside else { return radiance };
+                (Vertex::Medium { p: ray.at(flight), dir: ray.dir, phase }, None)
+            }
+            None => {
+                let sky = scene
+                    .lights
+                    .environments
+                    .iter()
+                    .map(|id| scene.lights.get(*id).le_from_infinity(ray.dir, w).lane(lane));
+                return radiance + throughput * sky.sum::<f32>();
+            }
+            Some(hit) => {
+                let surface = scene.geometry.interaction(&ray, &hit);
+                if let Some((_, light)) = scene.light_at(&surface) {
+                    radiance += throughput * light.le(surface.ng, -ray.dir, w).lane(lane);
+                }
+                let interface = scene.object(&surface).interface.map(|i| (i, surface.ng));
+                let material = scene.material(&surface);
+                if matches!(material, Material::Null) {
+                    inside = beyond(scene, inside, interface, &ray, w);
+                    ray = surface.spawn(ray.dir);
+                    continue;
+                }
+                tally.surface_vertices += 1;
+                (Vertex::surface(surface, material.bsdf(w, lane), ray.dir), interface)
+            }
+        };
+
+        radiance += throughput * dirac_lights(scene, &vertex, inside, interface, w, lane, tally);
+        let Some(next) = vertex.sample([sampler.next_1d(), sampler.next_1d(), sampler.next_1d()]) else {
+            return radiance;
+        };
+        throughput *= next.weight.lane(lane);
+        if throughput == 0.0 {
+            return radiance;
+        }
+        // A surface absorbs by chance, as a medium does; radiance compressed by refraction is no loss.
+        let survival = next.weight.lane(lane) * next.eta * next.eta;
+        if survival < 1.0 {
+            if sampler.next_1d() >= survival {
+                return radiance;
+            }
+            throughput /= survival;
+        }
+        ray = next.ray;
+        if next.crossed {
+            inside = beyond(scene, inside, interface, &ray, w);
+        }
+    }
+}
+
+/// The medium behind a surface that a ray leaves.
+fn beyond(
+    scene: &Scene,
+    inside: Inside,
+    interface: Option<(MediumInterface, crate::math::Vec3)>,
+    ray: &Ray,
+    w: &Wavelengths,
+) -> Inside {
+    interface.map_or(inside, |(media, ng)| Inside::of(scene, media.towards(ray.dir.dot(ng)), w))
+}
+
+/// What lights without extent give at a vertex: all of them.
+fn dirac_lights(
+    scene: &Scene,
+    vertex: &Vertex,
+    inside: Inside,
+    interface: Option<(MediumInterface, crate::math::Vec3)>,
+    w: &Wavelengths,
+    lane: usize,
+    tally: &mut Tally,
+) -> f32 {
+    if !vertex.can_use_light_samples() {
+        return 0.0;
+    }
+    let reference = vertex.reference();
+    let dirac = |l: &&Light| matches!(l, Light::Point(_) | Light::Spot(_) | Light::Distant(_));
+    let mut sum = 0.0;
+    for light in scene.lights.lights.iter().filter(dirac) {
+        let Some(sample) = light.sample(&reference, Vec2::ZERO, w) else { continue };
+        let f = vertex.eval(sample.dir).0.lane(lane);
+        let origin = vertex.shadow_origin(sample.dir);
+        let start = beyond(scene, inside, interface, &Ray::new(origin, sample.dir), w);
+        if f > 0.0
+            && let Some(t) = shadow::transmittance(scene, origin, sample.dir, &sample.target, start, w, tally)
+        {
+            sum += f * sample.li.lane(lane) * t.lane(lane);
+        }
+    }
+    sum
+}

@@ -1,0 +1,279 @@
+//! The workhorse: unidirectional path tracing of surfaces and homogeneous media, with light sampling at every vertex
+//! and multiple importance sampling over both ways to find a light and over the lanes.
+
+use super::Integrator;
+use crate::{
+    light::{Light, Reference},
+    material::Material,
+    math::Ray,
+    medium::Inside,
+    path::{Event, History, Path, Vertex, shadow},
+    sampling::Sampler,
+    scene::Scene,
+    shape::Interaction,
+    spectrum::{Lanes, Wavelengths},
+    tally::Tally,
+};
+
+/// Settings of the path tracer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolPath {
+    /// Scattering events after which a path is cut; `None` (the default) cuts nothing. What is lost is tallied.
+    pub max_depth: Option<u32>,
+    /// Paths below this throughput play roulette and survive with this throughput [1].
+    pub roulette: f32,
+}
+
+impl Default for VolPath {
+    fn default() -> Self {
+        Self { max_depth: None, roulette: 0.25 }
+    }
+}
+
+/// Whether a path goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// There is more to come.
+    Alive,
+    /// It has ended.
+    Done,
+}
+
+/// Takes what a path finds.
+pub trait Sink {
+    /// Radiance that reaches the camera along a path with this history.
+    fn add(&mut self, radiance: Lanes, history: &History);
+}
+
+impl Sink for Lanes {
+    #[inline]
+    fn add(&mut self, radiance: Lanes, _history: &History) {
+        *self += radiance;
+    }
+}
+
+impl Integrator for VolPath {
+    fn li(
+        &self,
+        scene: &Scene,
+        ray: Ray,
+        wavelengths: Wavelengths,
+        u_hero: f32,
+        sampler: &mut Sampler,
+        tally: &mut Tally,
+    ) -> Lanes {
+        let mut radiance = Lanes::ZERO;
+        let mut path = Path::new(scene, ray, wavelengths, u_hero, *sampler);
+        while path.step(scene, self, &mut radiance, tally) == Status::Alive {}
+        radiance
+    }
+}
+
+impl Path {
+    /// One event of the path: a term of the transport equation each.
+    #[inline]
+    pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
+        match self.next_event(scene, tally) {
+            Event::Escape => {
+                self.find_environment(scene, sink);
+                Status::Done
+            }
+            Event::Surface(hit) => {
+                self.find_emitter(scene, &hit, sink);
+                match scene.material(&hit) {
+                    Material::Null => {
+                        self.cross(scene, &hit);
+                        Status::Alive
+                    }
+                    material => {
+                        tally.surface_vertices += 1;
+                        let bsdf = material.bsdf(&self.wavelengths, self.hero);
+                        let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
+                        self.scatter(scene, settings, &vertex, material.disperses(), sink, tally)
+                    }
+                }
+            }
+            Event::Scatter(p) => {
+                let Inside::Medium { phase, .. } = self.inside else { return Status::Done };
+                self.history.order += 1;
+                let vertex = Vertex::Medium { p, dir: self.ray.dir, phase };
+                self.scatter(scene, settings, &vertex, false, sink, tally)
+            }
+            Event::Absorb => Status::Done,
+        }
+    }
+
+    /// Light from infinity.
+    fn find_environment(&self, scene: &Scene, sink: &mut impl Sink) {
+        for id in &scene.lights.environments {
+            let light = scene.lights.get(*id);
+            let le = light.le_from_infinity(self.ray.dir, &self.wavelengths);
+            if !le.is_zero() {
+                let weight = self.weights.emission(|| {
+                    scene.lights.probability(&self.last_vertex, *id)
+                        * light.pdf_towards(&self.last_vertex, self.ray.dir)
+                });
+                sink.add(weight * le, &self.history);
+            }
+        }
+    }
+
+    /// Light from the surface that was hit.
+    #[inline]
+    fn find_emitter(&self, scene: &Scene, hit: &Interaction, sink: &mut impl Sink) {
+        let Some((id, light)) = scene.light_at(hit) else { return };
+        let le = light.le(hit.ng, -self.ray.dir, &self.wavelengths);
+        if !le.is_zero() {
+            let weight = self.weights.emission(|| {
+                scene.lights.probability(&self.last_vertex, id) * light.pdf(&self.last_vertex, hit.p, hit.ng)
+            });
+            sink.add(weight * le, &self.history);
+        }
+    }
+
+    /// Straight on through a surface without a material.
+    fn cross(&mut self, scene: &Scene, hit: &Interaction) {
+        self.enter(scene, hit);
+        self.ray = hit.spawn(self.ray.dir);
+    }
+
+    /// Enters the medium on the far side of a surface.
+    fn enter(&mut self, scene: &Scene, hit: &Interaction) {
+        if let Some(interface) = scene.object(hit).interface {
+            let medium = interface.towards(self.ray.dir.dot(hit.ng));
+            self.inside = Inside::of(scene, medium, &self.wavelengths);
+        }
+    }
+
+    /// A vertex: light is sampled, roulette played, a direction taken.
+    #[inline]
+    fn scatter(
+        &mut self,
+        scene: &Scene,
+        settings: &VolPath,
+        vertex: &Vertex,
+        disperses: bool,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) -> Status {
+        if settings.max_depth.is_some_and(|limit| self.history.vertices >= limit) {
+            tally.truncated_paths += 1;
+            tally.truncated_throughput += f64::from(self.weights.throughput());
+            return Status::Done;
+        }
+        let reference = vertex.reference();
+        if vertex.can_use_light_samples() {
+            self.sample_light(scene, vertex, &reference, sink, tally);
+        }
+        if !self.weights.throughput().is_finite() {
+            sink.add(self.weights.beta, &self.history); // the film counts and locates it
+            return Status::Done;
+        }
+        if !self.survives(settings.roulette) {
+            return Status::Done;
+        }
+        let Some(scattered) = vertex.sample(self.sampler.direction(self.history.vertices)) else {
+            return Status::Done;
+        };
+        if disperses && scattered.eta != 1.0 {
+            self.part_wavelengths();
+        }
+        if scattered.specular {
+            self.weights.scatter_specular(scattered.weight);
+        } else {
+            self.weights.scatter(scattered.weight, scattered.pdf);
+        }
+        self.history.eta_scale *= scattered.eta * scattered.eta;
+        self.history.vertices += 1;
+        self.last_vertex = reference;
+        self.ray = scattered.ray;
+        if let (true, Vertex::Surface { hit, .. }) = (scattered.crossed, vertex) {
+            self.enter(scene, hit);
+        }
+        Status::Alive
+    }
+
+    /// Past a boundary that disperses, each wavelength has its own way: the path goes on with the hero's.
+    fn part_wavelengths(&mut self) {
+        if matches!(self.wavelengths, Wavelengths::Spectral { .. }) && !self.history.parted {
+            self.history.parted = true;
+            self.weights.keep_hero_only(self.hero);
+        }
+    }
+
+    /// Next event estimation: one light, one direction, one shadow ray.
+    #[inline]
+    fn sample_light(
+        &mut self,
+        scene: &Scene,
+        vertex: &Vertex,
+        reference: &Reference,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
+        if matches!(vertex, Vertex::Medium { .. }) && !scene.light_can_reach(self.inside.id()) {
+            return;
+        }
+        let [u_choice, u, v] = self.sampler.light(self.history.vertices);
+        let Some((id, probability)) = scene.lights.choose(reference, u_choice) else { return };
+        let light: &Light = scene.lights.get(id);
+        let Some(sample) = light.sample(reference, crate::math::Vec2::new(u, v), &self.wavelengths) else { return };
+        let (f, scatter_pdf) = vertex.eval(sample.dir);
+        if f.is_zero() {
+            return;
+        }
+        let inside = self.inside_towards(scene, vertex, sample.dir);
+        if !scene.light_can_reach(inside.id()) {
+            return;
+        }
+        let origin = vertex.shadow_origin(sample.dir);
+        let arrives =
+            shadow::transmittance(scene, origin, sample.dir, &sample.target, inside, &self.wavelengths, tally);
+        if let Some(transmittance) = arrives {
+            let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
+            let weight = self.weights.light_sample(probability * sample.pdf, scatter_pdf, transmittance);
+            sink.add(weight * f * sample.li, &self.history);
+        }
+    }
+
+    /// The medium that a ray from `vertex` towards `dir` starts in.
+    #[inline]
+    fn inside_towards(&self, scene: &Scene, vertex: &Vertex, dir: crate::math::Vec3) -> Inside {
+        match vertex {
+            Vertex::Surface { hit, .. } if dir.dot(hit.ng) * self.ray.dir.dot(hit.ng) > 0.0 => {
+                scene.object(hit).interface.map_or(self.inside, |interface| {
+                    Inside::of(scene, interface.towards(dir.dot(hit.ng)), &self.wavelengths)
+                })
+            }
+            _ => self.inside,
+        }
+    }
+
+    /// Roulette on the throughput: a path that carries less than `threshold` survives with probability
+    /// `throughput / threshold` and then carries the threshold. No weight ever grows beyond it, so the variance stays
+    /// finite at any albedo, and at albedo 1 nothing is ever cut.
+    #[inline]
+    fn survives(&mut self, threshold: f32) -> bool {
+        let throughput = self.weights.throughput() * self.history.eta_scale;
+        let survival = if throughput < threshold {
+            throughput / threshold
+        } else if self.is_endless() {
+            ENDLESS_SURVIVAL
+        } else {
+            return true;
+        };
+        if self.sampler.roulette() >= survival {
+            return false;
+        }
+        self.weights.beta /= survival;
+        true
+    }
+
+    /// A million vertices without losing weight: light that nothing absorbs and that cannot leave.
+    fn is_endless(&self) -> bool {
+        self.history.vertices >= 1 << 20
+    }
+}
+
+/// Survival of a path that would otherwise never end.
+const ENDLESS_SURVIVAL: f32 = 0.999;

@@ -1,0 +1,262 @@
+//! Light that comes from all around: a uniform sky, or an image of one.
+
+use std::f32::consts::{FRAC_1_PI, PI};
+
+use super::{LightSample, Reference, Target};
+use crate::{
+    math::{Frame, Transform, Vec2, Vec3, fast::sin_cos_turn},
+    sampling::{piecewise2d::Piecewise2d, warp},
+    spectrum::{Lanes, Spectrum, Wavelengths},
+};
+
+/// The same radiance from every direction.
+#[derive(Debug, Clone)]
+pub struct ConstantEnvironment {
+    /// Radiance [W·m⁻²·sr⁻¹].
+    pub radiance: Spectrum,
+    /// Its luminance, for the choice of lights [W·m⁻²·sr⁻¹].
+    pub luminance: f32,
+}
+
+impl ConstantEnvironment {
+    /// At an opaque surface, directions by their cosine; elsewhere, all directions alike.
+    #[inline]
+    pub fn sample(&self, from: &Reference, u: Vec2, wavelengths: &Wavelengths) -> LightSample {
+        let dir = match from.normal {
+            Some(n) => Frame::around(n).to_world(warp::cosine_hemisphere(u)),
+            None => warp::uniform_sphere(u),
+        };
+        LightSample {
+            dir,
+            li: self.radiance.eval(wavelengths),
+            pdf: self.pdf(from, dir),
+            dirac: false,
+            target: Target::Infinity,
+        }
+    }
+
+    /// Density of [`Self::sample`] [1/sr].
+    #[inline]
+    pub fn pdf(&self, from: &Reference, dir: Vec3) -> f32 {
+        match from.normal {
+            Some(n) => n.dot(dir).max(0.0) * FRAC_1_PI,
+            None => 0.25 * FRAC_1_PI,
+        }
+    }
+}
+
+/// How directions lie on an environment image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Projection {
+    /// Latitude and longitude, 2:1, +y up in the map's own space (Mitsuba 3): `u = ½ + atan2(x, −z)/2π`, `v = θ/π`
+    /// from +y.
+    LatLong,
+    /// Equal-area octahedral map of the sphere on a square (Clarberg 2008), +z up in the map's own space (pbrt-v4).
+    EqualArea,
+}
+
+/// An image of the sky.
+#[derive(Debug, Clone)]
+pub struct EnvironmentMap {
+    /// Map space to world.
+    pub to_world: Transform,
+    /// How directions lie on the image.
+    pub projection: Projection,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Linear-sRGB radiance by pixel, row by row [W·m⁻²·sr⁻¹].
+    pub pixels: Vec<[f32; 3]>,
+    /// Radiance of unit red, green and blue: any pixel is a sum of them.
+    primaries: [Spectrum; 3],
+    /// Pixels in proportion to luminance and solid angle.
+    pub distribution: Piecewise2d,
+    /// Mean luminance over the sphere, for the choice of lights [W·m⁻²·sr⁻¹].
+    pub mean_luminance: f32,
+}
+
+impl EnvironmentMap {
+    /// From linear-sRGB pixels, row by row, scaled by `scale`.
+    ///
+    /// # Errors
+    /// The image is empty, or has values that are negative or not finite.
+    pub fn new(
+        to_world: Transform,
+        projection: Projection,
+        width: u32,
+        height: u32,
+        pixels: &[[f32; 3]],
+        scale: f32,
+    ) -> Result<Self, EnvironmentError> {
+        if width == 0 || height == 0 || pixels.len() != width as usize * height as usize {
+            return Err(EnvironmentError::Empty);
+        }
+        if let Some(i) = pixels.iter().position(|p| p.iter().any(|v| !v.is_finite() || *v < 0.0)) {
+            return Err(EnvironmentError::BadPixel { column: i as u32 % width, row: i as u32 / width });
+        }
+        let pixels: Vec<[f32; 3]> = pixels.iter().map(|p| p.map(|v| v * scale)).collect();
+        let luminance = |p: &[f32; 3]| 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
+        let share = |i: usize| match projection {
+            Projection::LatLong => (PI * ((i as u32 / width) as f32 + 0.5) / height as f32).sin(),
+            Projection::EqualArea => 1.0,
+        };
+        let weights: Vec<f32> = pixels.iter().enumerate().map(|(i, p)| luminance(p) * share(i)).collect();
+        let total_share: f64 = (0..weights.len()).map(|i| f64::from(share(i))).sum();
+        let mean_luminance = (weights.iter().map(|w| f64::from(*w)).sum::<f64>() / total_share) as f32;
+        let distribution = Piecewise2d::new(&weights, width as usize).ok_or(EnvironmentError::Black)?;
+        let primaries = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Spectrum::illuminant_rgb);
+        Ok(Self { to_world, projection, width, height, pixels, primaries, distribution, mean_luminance })
+    }
+
+    /// A bright direction.
+    #[inline]
+    pub fn sample(&self, u: Vec2, wavelengths: &Wavelengths) -> Option<LightSample> {
+        let (uv, pdf_uv) = self.distribution.sample(u);
+        let (local, jacobian) = self.direction(uv);
+        let pdf = pdf_uv / jacobian;
+        (pdf > 0.0 && pdf.is_finite()).then(|| LightSample {
+            dir: self.to_world.vector(local).normalize(),
+            li: self.radiance(uv, wavelengths),
+            pdf,
+            dirac: false,
+            target: Target::Infinity,
+        })
+    }
+
+    /// Density of [`Self::sample`] [1/sr].
+    #[inline]
+    pub fn pdf(&self, dir: Vec3) -> f32 {
+        let uv = self.coordinates(dir);
+        let (_, jacobian) = self.direction(uv);
+        if jacobian > 0.0 { self.distribution.pdf(uv) / jacobian } else { 0.0 }
+    }
+
+    /// Radiance out of a direction [W·m⁻²·sr⁻¹], constant over a pixel.
+    #[inline]
+    pub fn le(&self, dir: Vec3, wavelengths: &Wavelengths) -> Lanes {
+        self.radiance(self.coordinates(dir), wavelengths)
+    }
+
+    fn radiance(&self, uv: Vec2, wavelengths: &Wavelengths) -> Lanes {
+        let x = ((uv.x * self.width as f32) as u32).min(self.width - 1);
+        let y = ((uv.y * self.height as f32) as u32).min(self.height - 1);
+        let rgb = self.pixels[(y * self.width + x) as usize];
+        match wavelengths {
+            Wavelengths::Rgb => Lanes::rgb(rgb[0], rgb[1], rgb[2]),
+            _ => (0..3).fold(Lanes::ZERO, |sum, c| sum + self.primaries[c].eval(wavelengths) * rgb[c]),
+        }
+    }
+
+    fn coordinates(&self, dir: Vec3) -> Vec2 {
+        let d = self.to_world.inverse.transform_vector3(dir).normalize();
+        match self.projection {
+            Projection::LatLong => {
+                let u = 0.5 + d.x.atan2(-d.z) / (2.0 * PI);
+                Vec2::new(u.clamp(0.0, 1.0), d.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI)
+            }
+            Projection::EqualArea => equal_area_square(d),
+        }
+    }
+
+    /// Direction of a place on the image, and the solid angle of a unit of its area [sr].
+    fn direction(&self, uv: Vec2) -> (Vec3, f32) {
+        match self.projection {
+            Projection::LatLong => {
+                let (sin_theta, cos_theta) = sin_cos_turn(0.5 * uv.y);
+                let (sin_phi, cos_phi) = sin_cos_turn(uv.x);
+                // u = ½ looks along −z.
+                let d = Vec3::new(-sin_phi * sin_theta, cos_theta, cos_phi * sin_theta);
+                (d, 2.0 * PI * PI * sin_theta)
+            }
+            Projection::EqualArea => (equal_area_sphere(uv), 4.0 * PI),
+        }
+    }
+}
+
+/// An environment image that cannot be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum EnvironmentError {
+    /// No pixels.
+    #[error("the environment image has no pixels")]
+    Empty,
+    /// No light anywhere.
+    #[error("the environment image is black: leave the light out")]
+    Black,
+    /// A value that is no radiance.
+    #[error("the environment image has a negative or non-finite value at column {column}, row {row}")]
+    BadPixel {
+        /// Column.
+        column: u32,
+        /// Row.
+        row: u32,
+    },
+}
+
+/// Square to sphere, equal areas to equal solid angles (Clarberg 2008).
+fn equal_area_sphere(uv: Vec2) -> Vec3 {
+    let (u, v) = (2.0 * uv.x - 1.0, 2.0 * uv.y - 1.0);
+    let signed_distance = 1.0 - (u.abs() + v.abs());
+    let r = 1.0 - signed_distance.abs();
+    let phi_quarters = if r == 0.0 { 1.0 } else { (v.abs() - u.abs()) / r + 1.0 };
+    let z = (1.0 - r * r).copysign(signed_distance);
+    let (sin, cos) = (phi_quarters * PI / 4.0).sin_cos();
+    let scale = r * (2.0 - r * r).max(0.0).sqrt();
+    Vec3::new(cos.copysign(u) * scale, sin.copysign(v) * scale, z)
+}
+
+/// Sphere to square, the inverse of [`equal_area_sphere`].
+fn equal_area_square(d: Vec3) -> Vec2 {
+    let (x, y) = (d.x.abs(), d.y.abs());
+    let r = (1.0 - d.z.abs()).max(0.0).sqrt();
+    let phi = y.atan2(x) * (2.0 * FRAC_1_PI);
+    let mut v = phi * r;
+    let mut u = r - v;
+    if d.z < 0.0 {
+        (u, v) = (1.0 - v, 1.0 - u);
+    }
+    Vec2::new((u.copysign(d.x) + 1.0) * 0.5, (v.copysign(d.y) + 1.0) * 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(projection: Projection) -> EnvironmentMap {
+        let (w, h) = if projection == Projection::LatLong { (16, 8) } else { (8, 8) };
+        let pixels: Vec<[f32; 3]> = (0..w * h).map(|i| [1.0 + (i * 7 % 5) as f32; 3]).collect();
+        EnvironmentMap::new(Transform::IDENTITY, projection, w, h, &pixels, 1.0).unwrap()
+    }
+
+    #[test]
+    fn directions_and_places_on_the_image_are_inverse_to_each_other() {
+        for projection in [Projection::LatLong, Projection::EqualArea] {
+            let map = map(projection);
+            for i in 1..50 {
+                for j in 1..50 {
+                    let uv = Vec2::new(i as f32 / 50.0, j as f32 / 50.0);
+                    let (d, _) = map.direction(uv);
+                    assert!((d.length() - 1.0).abs() < 1e-5);
+                    assert!((map.coordinates(d) - uv).length() < 2e-4, "{projection:?} {uv} {}", map.coordinates(d));
+                }
+            }
+        }
+    }
+
+    /// ∫ pdf dω over the sphere = 1, by the midpoint rule on the image of the other projection.
+    #[test]
+    fn densities_integrate_to_one() {
+        for projection in [Projection::LatLong, Projection::EqualArea] {
+            let map = map(projection);
+            let n = 400;
+            let mut sum = 0.0f64;
+            for i in 0..n {
+                for j in 0..n {
+                    let uv = Vec2::new((i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32);
+                    sum += f64::from(map.pdf(equal_area_sphere(uv))) * f64::from(4.0 * PI) / f64::from(n * n);
+                }
+            }
+            assert!((sum - 1.0).abs() < 2e-3, "{projection:?}: {sum}");
+        }
+    }
+}

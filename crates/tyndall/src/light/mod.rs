@@ -1,0 +1,155 @@
+//! Where light comes from: emitting surfaces, points, spots, distant suns and environments.
+
+pub mod area;
+pub mod choose;
+pub mod distant;
+pub mod environment;
+pub mod point;
+pub mod spot;
+
+pub use area::{AreaLight, EmitterShape};
+pub use choose::LightTable;
+pub use distant::Distant;
+pub use environment::{ConstantEnvironment, EnvironmentMap, Projection};
+pub use point::PointLight;
+pub use spot::{Falloff, SpotLight};
+
+use crate::{
+    math::{Bounds, Vec2, Vec3},
+    spectrum::{Lanes, Wavelengths},
+};
+
+/// Index of a light of the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct LightId(pub u32);
+
+/// From where a light is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference {
+    /// The point [length].
+    pub p: Vec3,
+    /// The shading normal, at a surface that does not let light through; `None` when light may come from all sides.
+    pub normal: Option<Vec3>,
+}
+
+/// The end of a shadow ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Target {
+    /// A point in space.
+    Point(Vec3),
+    /// A point on a surface that must not shadow itself.
+    Surface {
+        /// The point [length].
+        p: Vec3,
+        /// Bound on its rounding error, per axis [length].
+        error: Vec3,
+        /// The surface's unit normal.
+        ng: Vec3,
+    },
+    /// Infinitely far away.
+    Infinity,
+}
+
+/// Light that arrives at a reference if nothing stands in the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightSample {
+    /// Unit direction from the reference to the light.
+    pub dir: Vec3,
+    /// Radiance [W·m⁻²·sr⁻¹]; for a Dirac light, the irradiance it makes on a plane facing it [W·m⁻²].
+    pub li: Lanes,
+    /// Density over solid angle [1/sr]; 1 for a Dirac light.
+    pub pdf: f32,
+    /// Whether the light is a Dirac in direction, so that no other technique can find it.
+    pub dirac: bool,
+    /// Where the light is.
+    pub target: Target,
+}
+
+/// A light of the scene.
+#[derive(Debug, Clone)]
+pub enum Light {
+    /// An emitting surface.
+    Area(AreaLight),
+    /// A point that shines alike in all directions.
+    Point(PointLight),
+    /// A point that shines into a cone.
+    Spot(SpotLight),
+    /// Parallel light.
+    Distant(Distant),
+    /// A uniform sky.
+    Constant(ConstantEnvironment),
+    /// A sky with an image.
+    Map(EnvironmentMap),
+}
+
+impl Light {
+    /// A direction towards the light; `None` when this light cannot reach the reference.
+    #[inline]
+    pub fn sample(&self, from: &Reference, u: Vec2, wavelengths: &Wavelengths) -> Option<LightSample> {
+        match self {
+            Self::Area(l) => l.sample(from, u, wavelengths),
+            Self::Point(l) => l.sample(from, wavelengths),
+            Self::Spot(l) => l.sample(from, wavelengths),
+            Self::Distant(l) => Some(l.sample(wavelengths)),
+            Self::Constant(l) => Some(l.sample(from, u, wavelengths)),
+            Self::Map(l) => l.sample(u, wavelengths),
+        }
+    }
+
+    /// Density [1/sr] with which [`Self::sample`] finds the point `p` of an emitting surface with unit normal `ng`.
+    #[inline]
+    pub fn pdf_at(&self, from: &Reference, p: Vec3, ng: Vec3) -> f32 {
+        match self {
+            Self::Area(l) => l.pdf(from, p, ng),
+            _ => 0.0,
+        }
+    }
+
+    /// Density [1/sr] with which [`Self::sample`] finds a direction of the environment.
+    #[inline]
+    pub fn pdf_towards(&self, from: &Reference, dir: Vec3) -> f32 {
+        match self {
+            Self::Constant(l) => l.pdf(from, dir),
+            Self::Map(l) => l.pdf(dir),
+            _ => 0.0,
+        }
+    }
+
+    /// Radiance that comes from infinity out of direction `dir` [W·m⁻²·sr⁻¹].
+    #[inline]
+    pub fn le_from_infinity(&self, dir: Vec3, wavelengths: &Wavelengths) -> Lanes {
+        match self {
+            Self::Constant(l) => l.radiance.eval(wavelengths),
+            Self::Map(l) => l.le(dir, wavelengths),
+            _ => Lanes::ZERO,
+        }
+    }
+
+    /// Whether the light surrounds the scene, so that escaping rays find it.
+    pub fn is_environment(&self) -> bool {
+        matches!(self, Self::Constant(_) | Self::Map(_))
+    }
+
+    /// A guess at the irradiance that the light makes at `p` [W·m⁻²]: zero only where the light certainly is.
+    #[inline]
+    pub fn importance(&self, p: Vec3) -> f32 {
+        match self {
+            Self::Area(l) => l.importance(p),
+            Self::Point(l) => l.luminance / l.position.distance_squared(p).max(f32::MIN_POSITIVE),
+            Self::Spot(l) => l.importance(p),
+            Self::Distant(l) => l.luminance,
+            Self::Constant(l) => l.luminance * std::f32::consts::PI,
+            Self::Map(l) => l.mean_luminance * std::f32::consts::PI,
+        }
+    }
+
+    /// Where the light is, for lights that are somewhere.
+    pub fn bounds(&self) -> Option<Bounds> {
+        match self {
+            Self::Area(l) => Some(l.shape.bounds()),
+            Self::Point(l) => Some(Bounds::of([l.position])),
+            Self::Spot(l) => Some(Bounds::of([l.position])),
+            Self::Distant(_) | Self::Constant(_) | Self::Map(_) => None,
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What a surface is made of, as the scene has it: spectra that become a [`Bsdf`] at the wavelengths of a path.
+
+use crate::{
+    bsdf::{Bsdf, Sides},
+    spectrum::{Lanes, Spectrum, Wavelengths, glass::Glass},
+};
+
+/// A surface's material.
+#[derive(Debug, Clone)]
+pub enum Material {
+    /// Lambertian.
+    Diffuse {
+        /// Reflectance, 0 to 1 [1].
+        reflectance: Spectrum,
+        /// The sides that reflect.
+        sides: Sides,
+    },
+    /// Metal.
+    Conductor {
+        /// How it reflects.
+        metal: Metal,
+        /// Roughness along the tangent and across [1].
+        alpha: [f32; 2],
+        /// A factor on what is reflected [1].
+        tint: Spectrum,
+        /// The sides that reflect.
+        sides: Sides,
+    },
+    /// A boundary between two transparent media.
+    Dielectric {
+        /// Index of the inside over that of the outside [1].
+        eta: Index,
+        /// Roughness along the tangent and across [1].
+        alpha: [f32; 2],
+        /// A factor on what is reflected [1].
+        reflection_tint: Spectrum,
+        /// A factor on what is transmitted [1].
+        transmission_tint: Spectrum,
+    },
+    /// No material: light passes, and may enter another medium.
+    Null,
+}
+
+/// How a metal reflects.
+#[derive(Debug, Clone)]
+pub enum Metal {
+    /// By its complex index `eta + i·k` [1].
+    Index {
+        /// Real part [1].
+        eta: Spectrum,
+        /// Imaginary part [1].
+        k: Spectrum,
+    },
+    /// By its reflectance at normal incidence, 0 to 1 [1].
+    Reflectance(Spectrum),
+    /// All light, at every angle.
+    Mirror,
+}
+
+/// A relative index of refraction.
+#[derive(Debug, Clone, Copy)]
+pub enum Index {
+    /// The same at every wavelength [1].
+    Constant(f32),
+    /// Another at every wavelength: light disperses.
+    Glass(Glass),
+}
+
+/// The sodium D line [nm], for which a single index is meant.
+const SODIUM_D: f32 = 589.3;
+
+impl Material {
+    /// The BSDF in the lanes of a path, whose lane `hero` decides where wavelengths part.
+    #[inline]
+    pub fn bsdf(&self, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+        match self {
+            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(wavelengths)).on(*sides),
+            Self::Conductor { metal, alpha: [x, y], tint, sides } => {
+                let bsdf = match metal {
+                    Metal::Index { eta, k } => Bsdf::conductor(eta.eval(wavelengths), k.eval(wavelengths), *x, *y),
+                    Metal::Reflectance(r) => Bsdf::conductor_of_reflectance(r.eval(wavelengths), *x, *y),
+                    // |1 − ik| = |1 + ik|: a purely imaginary index reflects all.
+                    Metal::Mirror => Bsdf::conductor(Lanes::ZERO, Lanes::ONE, *x, *y),
+                };
+                bsdf.tinted(tint.eval(wavelengths), Lanes::ONE).on(*sides)
+            }
+            Self::Dielectric { eta, alpha: [x, y], reflection_tint, transmission_tint } => {
+                Bsdf::dielectric(eta.at(wavelengths, hero), *x, *y)
+                    .tinted(reflection_tint.eval(wavelengths), transmission_tint.eval(wavelengths))
+            }
+            Self::Null => Bsdf::Null,
+        }
+    }
+
+    /// Whether wavelengths part here, so that a path can go on with one only.
+    #[inline]
+    pub fn disperses(&self) -> bool {
+        matches!(self, Self::Dielectric { eta: Index::Glass(_), .. })
+    }
+}
+
+impl Index {
+    fn at(&self, wavelengths: &Wavelengths, hero: usize) -> f32 {
+        match (self, wavelengths) {
+            (Self::Constant(eta), _) => *eta,
+            (Self::Glass(glass), Wavelengths::Spectral { lambda, .. }) => glass.eta(lambda[hero]),
+            (Self::Glass(glass), _) => glass.eta(SODIUM_D),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Who is inside what: boundaries between media, and the medium that a path is in.
+
+use super::{Coefficients, MediumId};
+use crate::{phase::Phase, scene::Scene, spectrum::Wavelengths};
+
+/// The media on the two sides of a surface; `None` is vacuum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MediumInterface {
+    /// On the side opposite to the normal.
+    pub inside: Option<MediumId>,
+    /// On the side of the normal.
+    pub outside: Option<MediumId>,
+}
+
+impl MediumInterface {
+    /// The medium that light enters which leaves the surface with `cos_normal = dir · n`.
+    #[inline]
+    pub fn towards(&self, cos_normal: f32) -> Option<MediumId> {
+        if cos_normal > 0.0 { self.outside } else { self.inside }
+    }
+}
+
+/// The medium that a path is in, with its coefficients at the path's wavelengths.
+#[derive(Debug, Clone, Copy)]
+pub enum Inside {
+    /// Nothing scatters here.
+    Vacuum,
+    /// A scattering or absorbing medium.
+    Medium {
+        /// Which.
+        id: MediumId,
+        /// Its coefficients in the lanes of the path.
+        coefficients: Coefficients,
+        /// Its phase function.
+        phase: Phase,
+    },
+}
+
+impl Inside {
+    /// In medium `id` of the scene.
+    #[inline]
+    pub fn of(scene: &Scene, id: Option<MediumId>, wavelengths: &Wavelengths) -> Self {
+        id.map_or(Self::Vacuum, |id| {
+            let medium = &scene.media[id.0 as usize];
+            Self::Medium { id, coefficients: medium.coefficients(wavelengths), phase: medium.phase }
+        })
+    }
+
+    /// Its id, `None` for vacuum.
+    pub fn id(&self) -> Option<MediumId> {
+        match self {
+            Self::Vacuum => None,
+            Self::Medium { id, .. } => Some(*id),
+        }
+    }
+
+    /// The coefficients, unless nothing is here.
+    #[inline]
+    pub fn coefficients(&self) -> Option<&Coefficients> {
+        match self {
+            Self::Vacuum => None,
+            Self::Medium { coefficients, .. } => Some(coefficients),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! What happens next to a path: free flight first, ray second.
+
+use super::Path;
+use crate::{
+    math::{Vec3, fast},
+    medium::Inside,
+    scene::Scene,
+    shape::Interaction,
+    tally::Tally,
+};
+
+/// One term of the transport equation.
+#[derive(Debug, Clone, Copy)]
+pub enum Event {
+    /// Nothing more is hit.
+    Escape,
+    /// A surface is reached.
+    Surface(Interaction),
+    /// A collision that scatters, at this point.
+    Scatter(Vec3),
+    /// A collision in a medium that only absorbs.
+    Absorb,
+}
+
+impl Path {
+    /// Samples a free flight, looks for a surface before its end, and weighs the path for what it found.
+    #[inline]
+    pub fn next_event(&mut self, scene: &Scene, tally: &mut Tally) -> Event {
+        let flight = self.sample_flight();
+        tally.rays += 1;
+        match scene.geometry.intersect(&self.ray, flight) {
+            Some(hit) => {
+                if let Some(coefficients) = self.inside.coefficients() {
+                    self.weights.pass(coefficients.transmittance(hit.t), self.hero);
+                }
+                Event::Surface(scene.geometry.interaction(&self.ray, &hit))
+            }
+            None if flight.is_finite() => self.collide(flight, tally),
+            None => {
+                if let Some(coefficients) = self.inside.coefficients() {
+                    self.weights.pass(coefficients.transmittance(f32::INFINITY), self.hero);
+                }
+                Event::Escape
+            }
+        }
+    }
+
+    /// A distance with density `σ_t exp(−σ_t s)` in the hero's lane; infinite where the hero meets nothing.
+    #[inline]
+    fn sample_flight(&mut self) -> f32 {
+        match self.inside.coefficients() {
+            None => f32::INFINITY,
+            Some(coefficients) => {
+                let sigma_t = coefficients.sigma_t.lane(self.hero);
+                if sigma_t > 0.0 {
+                    -fast::ln(self.sampler.flight(self.history.vertices)) / sigma_t
+                } else {
+                    f32::INFINITY
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn collide(&mut self, flight: f32, tally: &mut Tally) -> Event {
+        let Inside::Medium { coefficients, .. } = &self.inside else { return Event::Escape };
+        tally.collisions += 1;
+        if coefficients.sigma_s.is_zero() {
+            return Event::Absorb;
+        }
+        let transmittance = coefficients.transmittance(flight);
+        self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
+        Event::Scatter(self.ray.at(flight))
+    }
+}

@@ -1,0 +1,51 @@
+//! A path as a value: where it is, what it weighs, what it has been through.
+
+pub mod event;
+pub mod history;
+pub mod shadow;
+pub mod vertex;
+pub mod weights;
+
+pub use event::Event;
+pub use history::History;
+pub use vertex::Vertex;
+pub use weights::PathWeights;
+
+use crate::{light::Reference, math::Ray, medium::Inside, sampling::Sampler, scene::Scene, spectrum::Wavelengths};
+
+/// One path of light, followed from the camera.
+#[derive(Debug, Clone)]
+pub struct Path {
+    /// Where it goes next.
+    pub ray: Ray,
+    /// The medium that it is in.
+    pub inside: Inside,
+    /// What it would carry.
+    pub weights: PathWeights,
+    /// What its lanes mean.
+    pub wavelengths: Wavelengths,
+    /// The lane that makes the decisions.
+    pub hero: usize,
+    /// Its random numbers.
+    pub sampler: Sampler,
+    /// What it has been through.
+    pub history: History,
+    /// The last vertex from which a light could have been sampled.
+    pub last_vertex: Reference,
+}
+
+impl Path {
+    /// A path that leaves the camera.
+    pub fn new(scene: &Scene, ray: Ray, wavelengths: Wavelengths, u_hero: f32, sampler: Sampler) -> Self {
+        Self {
+            ray,
+            inside: Inside::of(scene, scene.camera.medium, &wavelengths),
+            weights: PathWeights::default(),
+            wavelengths,
+            hero: ((u_hero * 4.0) as usize).min(3),
+            sampler,
+            history: History::default(),
+            last_vertex: Reference { p: ray.origin, normal: None },
+        }
+    }
+}

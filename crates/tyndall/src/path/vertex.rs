@@ -1,0 +1,150 @@
+//! A place where a path scatters: on a surface or in a medium, with one interface for both.
+
+use crate::{
+    bsdf::Bsdf,
+    light::Reference,
+    math::{Frame, Ray, Vec2, Vec3},
+    phase::{Phase, deflect},
+    shape::Interaction,
+    spectrum::Lanes,
+};
+
+/// A scattering vertex.
+#[derive(Debug, Clone, Copy)]
+pub enum Vertex {
+    /// On a surface.
+    Surface {
+        /// Where.
+        hit: Interaction,
+        /// The local space of its BSDF.
+        frame: Frame,
+        /// How it scatters.
+        bsdf: Bsdf,
+        /// Back along the path, local.
+        wo: Vec3,
+    },
+    /// In a medium.
+    Medium {
+        /// Where [length].
+        p: Vec3,
+        /// Direction of travel before the collision.
+        dir: Vec3,
+        /// How it scatters.
+        phase: Phase,
+    },
+}
+
+/// A direction that scattering took.
+#[derive(Debug, Clone, Copy)]
+pub struct Scattered {
+    /// The ray that leaves.
+    pub ray: Ray,
+    /// `f·|cos| / pdf`.
+    pub weight: Lanes,
+    /// Density [1/sr]; meaningless for a Dirac lobe.
+    pub pdf: f32,
+    /// Whether the lobe is a Dirac.
+    pub specular: bool,
+    /// Relative index crossed [1].
+    pub eta: f32,
+    /// Whether the path is now on the other side.
+    pub crossed: bool,
+}
+
+impl Vertex {
+    /// A vertex on a surface that a ray along `dir` has hit.
+    #[inline]
+    pub fn surface(hit: Interaction, bsdf: Bsdf, dir: Vec3) -> Self {
+        let frame = hit.shading_frame();
+        Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir) }
+    }
+
+    /// From where lights are looked at.
+    #[inline]
+    pub fn reference(&self) -> Reference {
+        match self {
+            Self::Surface { hit, bsdf, wo, .. } => {
+                let normal = (!bsdf.transmits()).then_some(if wo.z > 0.0 { hit.ns } else { -hit.ns });
+                Reference { p: hit.p, normal }
+            }
+            Self::Medium { p, .. } => Reference { p: *p, normal: None },
+        }
+    }
+
+    /// Whether a light sample could contribute at all.
+    #[inline]
+    pub fn can_use_light_samples(&self) -> bool {
+        match self {
+            Self::Surface { bsdf, .. } => !bsdf.is_specular(),
+            Self::Medium { .. } => true,
+        }
+    }
+
+    /// `f·|cos|` and the density [1/sr] of scattering towards `dir`.
+    #[inline]
+    pub fn eval(&self, dir: Vec3) -> (Lanes, f32) {
+        match self {
+            Self::Surface { hit, frame, bsdf, wo } => {
+                let wi = frame.to_local(dir);
+                if !same_side(wi.z, dir.dot(hit.ng)) {
+                    return (Lanes::ZERO, 0.0);
+                }
+                (bsdf.eval(*wo, wi), bsdf.pdf(*wo, wi))
+            }
+            Self::Medium { dir: travel, phase, .. } => {
+                let value = phase.eval(travel.dot(dir));
+                (Lanes::splat(value), value)
+            }
+        }
+    }
+
+    /// Draws a direction.
+    #[inline]
+    pub fn sample(&self, [u_lobe, u, v]: [f32; 3]) -> Option<Scattered> {
+        match self {
+            Self::Surface { hit, frame, bsdf, wo } => {
+                let sample = bsdf.sample(*wo, u_lobe, Vec2::new(u, v))?;
+                let dir = frame.to_world(sample.wi).normalize();
+                if !same_side(sample.wi.z, dir.dot(hit.ng)) {
+                    return None;
+                }
+                Some(Scattered {
+                    ray: hit.spawn(dir),
+                    weight: sample.weight,
+                    pdf: sample.pdf,
+                    specular: sample.specular,
+                    eta: sample.eta,
+                    crossed: sample.wi.z * wo.z < 0.0,
+                })
+            }
+            Self::Medium { p, dir, phase } => {
+                let cos_theta = phase.sample(u);
+                let dir = deflect(*dir, cos_theta, v);
+                let pdf = phase.eval(cos_theta);
+                Some(Scattered {
+                    ray: Ray::new(*p, dir),
+                    weight: Lanes::ONE,
+                    pdf,
+                    specular: false,
+                    eta: 1.0,
+                    crossed: false,
+                })
+            }
+        }
+    }
+
+    /// The origin of a shadow ray towards `dir`.
+    #[inline]
+    pub fn shadow_origin(&self, dir: Vec3) -> Vec3 {
+        match self {
+            Self::Surface { hit, .. } => hit.spawn(dir).origin,
+            Self::Medium { p, .. } => *p,
+        }
+    }
+}
+
+/// Whether a direction is on the same side of the shading and of the geometric normal: else it would leak.
+#[inline]
+fn same_side(local_z: f32, cos_geometric: f32) -> bool {
+    local_z * cos_geometric > 0.0
+}

@@ -1,0 +1,97 @@
+//! The bookkeeping of a path's weight: throughput, spectral MIS over the lanes, and MIS with light sampling.
+//!
+//! Every decision is made with the densities of one lane, the hero. Any lane could have been the hero, so a lane's
+//! contribution is `beta · L / mean(r_u + r_l)`, the balance heuristic over heroes and over the two ways to find a light
+//! (Wilkie et al. 2014; Miller et al. 2019; the rescaled bookkeeping follows Pharr et al. 2023, § 14.2).
+
+use crate::spectrum::Lanes;
+
+/// Throughput and relative densities of a path, all divided by the density of the hero's decisions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathWeights {
+    /// `f / p_hero`.
+    pub beta: Lanes,
+    /// `p_lane / p_hero`: how the path would have been found with another lane as hero.
+    pub r_u: Lanes,
+    /// `p_lane / p_hero` for finding the next emitter by light sampling at the last vertex instead, still to be
+    /// multiplied by the light's own density; `None` when light sampling could not have found this path.
+    pub r_l: Option<Lanes>,
+}
+
+impl Default for PathWeights {
+    fn default() -> Self {
+        Self { beta: Lanes::ONE, r_u: Lanes::ONE, r_l: None }
+    }
+}
+
+impl PathWeights {
+    /// The weight of an emitter that the path has run into; `light_pdf` is the density of light sampling [1/sr].
+    #[inline]
+    pub fn emission(&self, light_pdf: impl FnOnce() -> f32) -> Lanes {
+        let density = match self.r_l {
+            None => self.r_u.mean(),
+            Some(r_l) => (self.r_u + r_l * light_pdf()).mean(),
+        };
+        self.beta / density
+    }
+
+    /// The weight of a light that was sampled with density `light_pdf` over solid angle and that scattering would have
+    /// found with `scatter_pdf`, through `transmittance`. For a Dirac light scattering finds nothing: pass 0 and 1.
+    #[inline]
+    pub fn light_sample(&self, light_pdf: f32, scatter_pdf: f32, transmittance: Lanes) -> Lanes {
+        // Scattering reaches the light if its free flight does, with probability `transmittance` in each lane.
+        let density = (self.r_u * (transmittance * scatter_pdf + Lanes::splat(light_pdf))).mean();
+        self.beta * transmittance / density
+    }
+
+    /// The path flew a distance without colliding, with probability `transmittance` in each lane.
+    #[inline]
+    pub fn pass(&mut self, transmittance: Lanes, hero: usize) {
+        let by_hero = 1.0 / transmittance.lane(hero);
+        self.beta *= transmittance * by_hero;
+        self.r_u *= transmittance * by_hero;
+        if let Some(r_l) = &mut self.r_l {
+            *r_l *= by_hero;
+        }
+    }
+
+    /// The path collided after a distance, with density `sigma_t · transmittance` in each lane, and scatters.
+    #[inline]
+    pub fn collide(&mut self, sigma_t: Lanes, sigma_s: Lanes, transmittance: Lanes, hero: usize) {
+        let by_hero = 1.0 / (sigma_t.lane(hero) * transmittance.lane(hero));
+        self.beta *= sigma_s * transmittance * by_hero;
+        self.r_u *= sigma_t * transmittance * by_hero;
+        self.r_l = None;
+    }
+
+    /// The path took a direction drawn with density `pdf`, with weight `f·cos / pdf` in each lane.
+    #[inline]
+    pub fn scatter(&mut self, weight: Lanes, pdf: f32) {
+        self.beta *= weight;
+        self.r_l = Some(self.r_u / pdf);
+    }
+
+    /// The path took the one direction of a Dirac lobe: no light sample could have.
+    #[inline]
+    pub fn scatter_specular(&mut self, weight: Lanes) {
+        self.beta *= weight;
+        self.r_l = None;
+    }
+
+    /// The wavelengths part here: the path goes on with the hero alone, which alone could have come this way. In the
+    /// film's mean over four lanes it stands for all of them. To be called once a path.
+    pub fn keep_hero_only(&mut self, hero: usize) {
+        let lane = |lanes: Lanes| Lanes::splat(lanes.lane(hero));
+        let mut only = [0.0; 4];
+        only[hero] = 4.0 * self.beta.lane(hero);
+        self.beta = Lanes::new(only);
+        self.r_u = lane(self.r_u);
+        self.r_l = self.r_l.map(lane);
+    }
+
+    /// The greatest lane of the throughput as the film would weigh it: what roulette looks at.
+    #[inline]
+    pub fn throughput(&self) -> f32 {
+        self.beta.max_lane() / self.r_u.mean()
+    }
+}

@@ -1,0 +1,204 @@
+//! From a scene to a film: tiles, threads, passes, progress, cancellation.
+//!
+//! The image depends on the scene and the settings alone. Every sample owns its random numbers (pixel, index, seed) and
+//! every pixel adds its samples in the order of their index, so threads, tiles, passes and crops cannot be seen in it.
+
+use rayon::prelude::*;
+
+use crate::{
+    film::{Crop, Film, Pixel},
+    integrator::Integrator,
+    sampling::{Sampler, SamplerKind},
+    scene::Scene,
+    spectrum::{Wavelengths, film_rgb},
+    tally::Tally,
+};
+
+/// Edge of a tile [pixels].
+const TILE: u32 = 16;
+
+/// What to render of a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Samples a pixel. The observer may stop earlier.
+    pub spp: u32,
+    /// Index of the first sample: a resumed render begins where the last one ended.
+    pub first_sample: u32,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Where the first dimensions of a sample come from.
+    pub sampler: SamplerKind,
+    /// The part of the image to render; `None` for all.
+    pub crop: Option<Crop>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { spp: 16, first_sample: 0, seed: 0, sampler: SamplerKind::default(), crop: None }
+    }
+}
+
+/// How far a render has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Samples taken so far, over all pixels.
+    pub samples: u64,
+    /// Samples asked for, over all pixels.
+    pub total: u64,
+}
+
+/// Watches a render and may stop it. Called from the render's threads.
+pub trait Observer: Sync {
+    /// Asked before every tile; `true` leaves the rest undone.
+    fn cancelled(&self) -> bool {
+        false
+    }
+    /// A tile has got more samples.
+    fn tile_done(&self, _progress: Progress) {}
+    /// Every pixel has got more samples: a good moment to show the image.
+    fn pass_done(&self, _film: &Film, _progress: Progress) {}
+}
+
+/// The observer that lets everything pass.
+impl Observer for () {}
+
+/// A finished (or stopped) render.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rendering {
+    /// The image with its errors.
+    pub film: Film,
+    /// What the paths did.
+    pub tally: Tally,
+    /// Whether the observer stopped it before all samples were taken.
+    pub stopped: bool,
+}
+
+/// The pixels of one tile, while they are being rendered.
+#[derive(Debug)]
+struct Tile {
+    area: Crop,
+    pixels: Vec<Pixel>,
+    tally: Tally,
+}
+
+/// Renders a scene on the current rayon thread pool.
+pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, observer: &dyn Observer) -> Rendering {
+    let camera = &scene.camera;
+    let mut film =
+        Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)));
+    let mut tiles = tiles_of(film.crop);
+    let total = film.pixels.len() as u64 * u64::from(settings.spp);
+    let samples = std::sync::atomic::AtomicU64::new(0);
+    let stopped = std::sync::atomic::AtomicBool::new(false);
+    use std::sync::atomic::Ordering::Relaxed;
+
+    for pass in passes(settings.spp) {
+        tiles.par_iter_mut().with_max_len(1).for_each(|tile| {
+            if observer.cancelled() {
+                stopped.store(true, Relaxed);
+                return;
+            }
+            let first = settings.first_sample.saturating_add(pass.start);
+            let last = settings.first_sample.saturating_add(pass.end);
+            render_tile(scene, integrator, settings, first..last, tile);
+            let taken = tile.pixels.len() as u64 * u64::from(pass.end - pass.start);
+            let samples = samples.fetch_add(taken, Relaxed) + taken;
+            observer.tile_done(Progress { samples, total });
+        });
+        copy_tiles(&tiles, &mut film);
+        observer.pass_done(&film, Progress { samples: samples.load(Relaxed), total });
+        if stopped.load(Relaxed) {
+            break;
+        }
+    }
+    let tally = tiles.iter().fold(Tally::default(), |sum, tile| sum.merged(&tile.tally));
+    Rendering { film, tally, stopped: stopped.load(Relaxed) }
+}
+
+/// Sample ranges of the passes: 1, 1, 2, 4, … at most 32 at a time, so that a first image comes at once and later
+/// passes cost little to show.
+fn passes(spp: u32) -> impl Iterator<Item = std::ops::Range<u32>> {
+    let mut start = 0;
+    std::iter::from_fn(move || {
+        let size = start.clamp(1, 32).min(spp - start);
+        let range = start..start + size;
+        start = range.end;
+        (!range.is_empty()).then_some(range)
+    })
+}
+
+fn tiles_of(crop: Crop) -> Vec<Tile> {
+    let mut tiles = Vec::new();
+    // Tiles lie on a grid fixed to the image, not to the crop.
+    for y in crop.min.1 / TILE..crop.max.1.div_ceil(TILE) {
+        for x in crop.min.0 / TILE..crop.max.0.div_ceil(TILE) {
+            let area = Crop {
+                min: (crop.min.0.max(x * TILE), crop.min.1.max(y * TILE)),
+                max: (crop.max.0.min((x + 1) * TILE), crop.max.1.min((y + 1) * TILE)),
+            };
+            let pixels = vec![Pixel::default(); (area.width() * area.height()) as usize];
+            if !pixels.is_empty() {
+                tiles.push(Tile { area, pixels, tally: Tally::default() });
+            }
+        }
+    }
+    tiles
+}
+
+fn copy_tiles(tiles: &[Tile], film: &mut Film) {
+    let crop = film.crop;
+    for tile in tiles {
+        let columns = tile.area.width() as usize;
+        for (row, source) in tile.pixels.chunks(columns).enumerate() {
+            let y = tile.area.min.1 - crop.min.1 + row as u32;
+            let start = (y * crop.width() + (tile.area.min.0 - crop.min.0)) as usize;
+            film.pixels[start..start + columns].copy_from_slice(source);
+        }
+    }
+}
+
+fn render_tile(
+    scene: &Scene,
+    integrator: &dyn Integrator,
+    settings: &Settings,
+    samples: std::ops::Range<u32>,
+    tile: &mut Tile,
+) {
+    let columns = tile.area.width();
+    for (i, pixel) in tile.pixels.iter_mut().enumerate() {
+        let (x, y) = (tile.area.min.0 + i as u32 % columns, tile.area.min.1 + i as u32 / columns);
+        for index in samples.clone() {
+            let value = sample_pixel(scene, integrator, settings, (x, y), index, &mut tile.tally);
+            if value.iter().all(|v| v.is_finite() && *v >= 0.0) || is_spectral_undershoot(scene, value) {
+                pixel.add(value);
+            } else {
+                // Counted and located, and left out of the sums, which one such sample would spoil for good.
+                tile.tally.non_finite_sample((x, y), index, value);
+                pixel.add([0.0; 3]);
+            }
+        }
+    }
+}
+
+/// Saturated wavelengths lie outside the gamut of linear sRGB: finite negative values are honest there.
+fn is_spectral_undershoot(scene: &Scene, value: [f32; 3]) -> bool {
+    scene.color == crate::spectrum::ColorMode::Spectral && value.iter().all(|v| v.is_finite())
+}
+
+/// One sample of one pixel, linear sRGB.
+fn sample_pixel(
+    scene: &Scene,
+    integrator: &dyn Integrator,
+    settings: &Settings,
+    pixel: (u32, u32),
+    index: u32,
+    tally: &mut Tally,
+) -> [f32; 3] {
+    let mut sampler = Sampler::new(settings.sampler, pixel, index, settings.seed);
+    let ray = scene.camera.sample_ray(pixel, sampler.camera());
+    let [u_wavelength, u_hero] = sampler.wavelength();
+    let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
+    tally.paths += 1;
+    let radiance = integrator.li(scene, ray, wavelengths, u_hero, &mut sampler, tally);
+    film_rgb(radiance, &wavelengths).map(|v| v * scene.camera.exposure)
+}

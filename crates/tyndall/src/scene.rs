@@ -1,0 +1,165 @@
+//! The resolved, immutable world that a render reads: arrays and typed ids, made once.
+
+use crate::{
+    camera::Camera,
+    light::{AreaLight, LightId, LightTable},
+    material::Material,
+    math::{Bounds, Vec3},
+    medium::{Homogeneous, MediumId, MediumInterface},
+    shape::{Geometry, Interaction},
+    spectrum::ColorMode,
+};
+
+/// Index of a material of the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
+
+/// What a shape is made of: everything about a surface that is not its geometry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// What the user called it.
+    pub name: String,
+    /// How it scatters light.
+    pub material: MaterialId,
+    /// The media on its two sides; `None` when it stands in a medium without bounding one.
+    pub interface: Option<MediumInterface>,
+    /// Its lights.
+    pub emission: Emission,
+}
+
+/// The lights that the primitives of an object are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Emission {
+    /// It does not shine.
+    None,
+    /// All its primitives are one light.
+    Whole(LightId),
+    /// Each primitive is a light of its own: the light of primitive 0, the others follow.
+    EachPrimitive(LightId),
+}
+
+/// A scene, ready to be rendered.
+#[derive(Debug)]
+pub struct Scene {
+    /// What the lanes of a path mean.
+    pub color: ColorMode,
+    /// The view.
+    pub camera: Camera,
+    /// All surfaces.
+    pub geometry: Geometry,
+    /// By [`crate::shape::ObjectId`].
+    pub objects: Vec<Object>,
+    /// By [`MaterialId`].
+    pub materials: Vec<Material>,
+    /// By [`MediumId`].
+    pub media: Vec<Homogeneous>,
+    /// All lights.
+    pub lights: LightTable,
+    /// What follows from the above and is asked for often.
+    facts: Facts,
+}
+
+/// What is known about a scene before the first ray.
+#[derive(Debug)]
+struct Facts {
+    /// Whether any surface lets light pass unchanged, so that shadow rays have to walk.
+    has_null_surfaces: bool,
+    /// By medium: whether a straight line from inside it can reach a light.
+    lit: Vec<bool>,
+}
+
+impl Scene {
+    /// Puts a scene together.
+    #[allow(clippy::too_many_arguments)] // one for each array of the world
+    pub fn new(
+        color: ColorMode,
+        camera: Camera,
+        geometry: Geometry,
+        objects: Vec<Object>,
+        materials: Vec<Material>,
+        media: Vec<Homogeneous>,
+        lights: LightTable,
+    ) -> Self {
+        let is_null = |o: &Object| matches!(materials[o.material.0 as usize], Material::Null);
+        let facts = Facts {
+            has_null_surfaces: objects.iter().any(is_null),
+            lit: (0..media.len())
+                .map(|i| can_be_lit(MediumId(i as u32), &geometry, &objects, &materials, &lights))
+                .collect(),
+        };
+        Self { color, camera, geometry, objects, materials, media, lights, facts }
+    }
+
+    /// The object that was hit.
+    #[inline]
+    pub fn object(&self, hit: &Interaction) -> &Object {
+        &self.objects[hit.object.0 as usize]
+    }
+
+    /// The material that was hit.
+    #[inline]
+    pub fn material(&self, hit: &Interaction) -> &Material {
+        &self.materials[self.object(hit).material.0 as usize]
+    }
+
+    /// The light that was hit, if the surface shines.
+    #[inline]
+    pub fn light_at(&self, hit: &Interaction) -> Option<(LightId, &AreaLight)> {
+        let id = match self.object(hit).emission {
+            Emission::None => return None,
+            Emission::Whole(id) => id,
+            Emission::EachPrimitive(first) => LightId(first.0 + hit.prim),
+        };
+        match self.lights.get(id) {
+            crate::light::Light::Area(light) => Some((id, light)),
+            _ => None,
+        }
+    }
+
+    /// A lower bound on the distance from `p` to the nearest surface, at most `cap` [length].
+    pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
+        self.geometry.clearance(p, cap)
+    }
+
+    /// Whether shadow rays must walk through surfaces that let light pass.
+    #[inline]
+    pub fn has_null_surfaces(&self) -> bool {
+        self.facts.has_null_surfaces
+    }
+
+    /// Whether sampling lights from inside a medium can ever succeed: not where every way out leads through glass and
+    /// no light is within.
+    #[inline]
+    pub fn light_can_reach(&self, medium: Option<MediumId>) -> bool {
+        medium.is_none_or(|id| self.facts.lit[id.0 as usize])
+    }
+}
+
+/// A medium is lit directly if it has an open boundary (one without a material), if it fills the space of a light, or
+/// if it has no boundary that we know of.
+fn can_be_lit(
+    medium: MediumId,
+    geometry: &Geometry,
+    objects: &[Object],
+    materials: &[Material],
+    lights: &LightTable,
+) -> bool {
+    let touches = |o: &Object| o.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium));
+    let is_null = |o: &Object| matches!(materials[o.material.0 as usize], Material::Null);
+    let mut body = Bounds::EMPTY;
+    for (index, object) in objects.iter().enumerate() {
+        // On the outside of a body the medium reaches as far as its other boundaries, which may be nowhere.
+        let surrounds = object.interface.is_some_and(|i| i.outside == Some(medium));
+        if touches(object) && (is_null(object) || surrounds) {
+            return true;
+        }
+        if touches(object) {
+            body = body.union(geometry.object_bounds(crate::shape::ObjectId(index as u32)));
+        }
+    }
+    body.is_empty() || lights.lights.iter().filter_map(crate::light::Light::bounds).any(|b| overlap(&body, &b))
+}
+
+fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
+}

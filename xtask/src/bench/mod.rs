@@ -1,0 +1,59 @@
+//! `cargo xtask bench`: the figures that tyndall promises, measured on this machine, peers in the same minutes.
+
+mod scenes;
+mod startup;
+mod threads;
+
+use anyhow::Result;
+use clap::Subcommand;
+
+use crate::peers::tyndall::Tyndall;
+use crate::shell::root;
+
+/// What to measure; everything if nothing is named.
+#[derive(Debug, Clone, Copy, Subcommand)]
+pub(crate) enum Bench {
+    /// Efficiency on the Cornell and fog boxes against both backends of Mitsuba (at least 1.5 times the better)
+    Scenes,
+    /// Time of `tyndall render` of a tiny scene (under 50 ms)
+    Startup,
+    /// How much faster two threads are than one (at least 1.9 times)
+    Threads,
+    /// Rays on one thread against Embree (at least 0.9 times its robust rays)
+    Rays,
+}
+
+/// Measures and prints; whether a target is met is said, but a missed one is no failure: machines differ.
+pub(crate) fn run(bench: Option<Bench>) -> Result<()> {
+    std::fs::create_dir_all(root().join("target/bench"))?;
+    println!("machine: {}", machine());
+    let tyndall = Tyndall::build()?;
+    match bench {
+        Some(Bench::Scenes) => scenes::run(&tyndall),
+        Some(Bench::Startup) => startup::run(&tyndall),
+        Some(Bench::Threads) => threads::run(&tyndall),
+        Some(Bench::Rays) => crate::bench_rays::run(),
+        None => {
+            startup::run(&tyndall)?;
+            threads::run(&tyndall)?;
+            scenes::run(&tyndall)?;
+            crate::bench_rays::run()
+        }
+    }
+}
+
+/// A figure beside its target.
+fn judge(name: &str, figure: f64, unit: &str, is_met: bool, target: &str) {
+    println!("{name}: {figure:.3} {unit} (target {target}: {})", if is_met { "met" } else { "MISSED" });
+}
+
+/// The processor and the load that others put on it, as Linux tells them.
+fn machine() -> String {
+    let read = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
+    let cpu_info = read("/proc/cpuinfo");
+    let model = cpu_info.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or("unknown processor");
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let load = read("/proc/loadavg");
+    let load = load.split_whitespace().next().unwrap_or("unknown");
+    format!("{}, {cores} cores, load {load} when the bench began", model.trim_start_matches([' ', '\t', ':']))
+}

@@ -1,0 +1,49 @@
+//! Efficiency, `1/(MSE · CPU s)`, against both backends of Mitsuba, in turns.
+
+use anyhow::Result;
+
+use super::judge;
+use crate::peers::mitsuba::Mitsuba;
+use crate::peers::runs::{Runs, Side, Turn};
+use crate::peers::settings::{Duel, Variant, duels};
+use crate::peers::tyndall::Tyndall;
+use crate::peers::{directory, scene_file};
+
+const SCENES: [&str; 2] = ["g_cornell", "d_fog_box"];
+const TURNS: u32 = 5;
+const RUNS_IN_A_TURN: u32 = 2;
+const TARGET: f64 = 1.5;
+
+/// Measures and prints.
+pub(super) fn run(tyndall: &Tyndall) -> Result<()> {
+    let mitsuba = Mitsuba::install()?;
+    for duel in duels().iter().filter(|duel| SCENES.contains(&duel.scene)) {
+        race(duel, &mitsuba, tyndall)?;
+    }
+    Ok(())
+}
+
+fn race(duel: &Duel, mitsuba: &Mitsuba, tyndall: &Tyndall) -> Result<()> {
+    let rivals = [Variant::Scalar, Variant::Llvm].map(|variant| Duel { variant, ..duel.clone() });
+    let directory = directory(duel.scene)?;
+    let mut ours: Vec<Runs> = Vec::new();
+    let mut theirs: [Vec<Runs>; 2] = [Vec::new(), Vec::new()];
+    for turn in Turn::all(TURNS, RUNS_IN_A_TURN) {
+        for (rival, runs) in rivals.iter().zip(&mut theirs) {
+            runs.push(mitsuba.render(rival, turn, &directory, false)?);
+        }
+        let label = directory.join("tyndall");
+        ours.push(tyndall.render(&scene_file(duel.scene), duel.tyndall_spp, turn, &label, &[])?);
+    }
+    let ours = Side::of(&ours, duel.tyndall_spp);
+    println!("{}: tyndall {:.3e} 1/(MSE·CPU s)", duel.scene, ours.efficiency);
+    let mut worst = f64::INFINITY;
+    for (rival, runs) in rivals.iter().zip(&theirs) {
+        let side = Side::of(runs, rival.mitsuba_spp);
+        let ratio = ours.efficiency_over(&side);
+        println!("{}: Mitsuba {} {:.3e}, tyndall is {ratio:.2}×", duel.scene, rival.variant.name(), side.efficiency);
+        worst = worst.min(ratio);
+    }
+    judge(&format!("{} over the better Mitsuba", duel.scene), worst, "×", worst >= TARGET, "1.5×");
+    Ok(())
+}

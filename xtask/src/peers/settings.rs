@@ -1,0 +1,69 @@
+//! The peers' scenes and, for each, the setting with which Mitsuba 3 does best, as measured on 128² pixels.
+//!
+//! Roulette is off in scattering media of high albedo: Mitsuba's default caps survival at 0.95 after depth 5, which
+//! makes the variance infinite there and loses light in practice. Light sampling inside the medium is off where a
+//! dielectric boundary blocks every shadow ray.
+
+/// A backend of Mitsuba.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Variant {
+    /// Plain C++, one path at a time
+    Scalar,
+    /// Compiled at run time by LLVM, 8 or 16 paths side by side
+    Llvm,
+}
+
+impl Variant {
+    /// Mitsuba's name for it.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar_rgb",
+            Self::Llvm => "llvm_ad_rgb",
+        }
+    }
+}
+
+/// One scene of `scenes/peers/mitsuba` and how both render it.
+#[derive(Debug, Clone)]
+pub(crate) struct Duel {
+    /// Name of the file without `.xml`
+    pub(crate) scene: &'static str,
+    /// Mitsuba's backend
+    pub(crate) variant: Variant,
+    /// Values of the scene's `$parameters` for Mitsuba, `name=value` separated by blanks
+    pub(crate) parameters: &'static str,
+    /// Samples a pixel in one run of Mitsuba: about 3 CPU seconds
+    pub(crate) mitsuba_spp: u32,
+    /// Samples a pixel in one run of tyndall
+    pub(crate) tyndall_spp: u32,
+}
+
+/// Spectral MIS without roulette.
+const DEEP: &str = "integrator=volpathmis rr_depth=1000000";
+/// The same, without light sampling in the medium.
+const DEEP_IN_GLASS: &str = "integrator=volpathmis rr_depth=1000000 nee=false";
+
+/// All scenes, the quick ones first.
+pub(crate) fn duels() -> Vec<Duel> {
+    use Variant::{Llvm, Scalar};
+    let duel = |scene, variant, parameters, mitsuba_spp, tyndall_spp| Duel {
+        scene,
+        variant,
+        parameters,
+        mitsuba_spp,
+        tyndall_spp,
+    };
+    vec![
+        duel("g_cornell", Llvm, "integrator=path", 256, 256),
+        duel("d_fog_box", Llvm, "integrator=volpath", 64, 64),
+        duel("f_grains", Scalar, "integrator=path", 32, 32),
+        duel("f2_grains_direct", Scalar, "integrator=path", 40, 40),
+        duel("b_marble_cube_matched", Scalar, DEEP, 12, 12),
+        duel("b2_furnace_matched", Scalar, DEEP_IN_GLASS, 24, 24),
+        duel("b3_grey_matched", Scalar, "integrator=volpath rr_depth=1000000", 12, 12),
+        duel("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 8),
+        duel("a2_marble_cube_spot", Scalar, DEEP_IN_GLASS, 2, 8),
+        duel("a3_marble_cube_rough_spot", Scalar, DEEP_IN_GLASS, 8, 8),
+        duel("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 2),
+    ]
+}
