@@ -27,13 +27,13 @@ pub(crate) enum Bench {
 pub(crate) fn run(bench: Option<Bench>) -> Result<()> {
     std::fs::create_dir_all(root().join("target/bench"))?;
     println!("machine: {}", machine());
-    let tyndall = Tyndall::build()?;
     match bench {
-        Some(Bench::Scenes) => scenes::run(&tyndall),
-        Some(Bench::Startup) => startup::run(&tyndall),
-        Some(Bench::Threads) => threads::run(&tyndall),
+        Some(Bench::Scenes) => scenes::run(&Tyndall::build()?),
+        Some(Bench::Startup) => startup::run(&Tyndall::build()?),
+        Some(Bench::Threads) => threads::run(&Tyndall::build()?),
         Some(Bench::Rays) => crate::bench_rays::run(),
         None => {
+            let tyndall = Tyndall::build()?;
             startup::run(&tyndall)?;
             threads::run(&tyndall)?;
             scenes::run(&tyndall)?;
