@@ -142,11 +142,12 @@ impl Statistics {
         let mut lines = vec![
             format!("{} in {}", self.outputs.join(" and "), time(self.wall_seconds)),
             format!(
-                "  {} spp, {}; pixel error {:.2} % of the mean; {} threads, {:.2} CPU seconds",
+                "  {} spp, {}; pixel error {:.2} % of the mean; {} thread{}, {:.2} CPU seconds",
                 Short(self.spp),
                 self.how_it_ended(),
                 100.0 * self.relative_error,
                 self.threads,
+                if self.threads == 1 { "" } else { "s" },
                 self.cpu_seconds,
             ),
             format!(

@@ -118,6 +118,7 @@ fn what_cannot_be_done_ends_with_status_2_and_says_why() {
         ("render ball.pbrt --time 3x", "no unit of time"),
         ("render ball.pbrt --crop 9,9,9,9", "empty"),
         ("render ball.pbrt --crop 0,0,99,9", "24x18"),
+        ("render ball.pbrt --resolution 60000x60000", "--crop"),
         ("render ball.pbrt --integrator bdpt", "volpath"),
         ("render ball.pbrt -o image.jpg", ".exr or .png"),
         ("render ball.pbrt -o nowhere/image.exr", "nowhere does not exist"),
