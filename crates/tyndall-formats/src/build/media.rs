@@ -46,7 +46,7 @@ impl Builder<'_> {
         let Some(m) = measured::named(&name.value) else {
             return self.fail(
                 SceneError::at(name.span, format!("no medium \"{}\" has been measured", name.value))
-                    .suggest(&name.value, measured::names()),
+                    .suggest(&name.value, measured::names().collect::<Vec<_>>()),
             );
         };
         let per_unit = self.desc.options.unit.value.millimetres() as f32;
