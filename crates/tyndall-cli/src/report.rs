@@ -142,10 +142,10 @@ impl Statistics {
         let mut lines = vec![
             format!("{} in {}", self.outputs.join(" and "), time(self.wall_seconds)),
             format!(
-                "  {} spp, {}; pixel error {:.2} % of the mean; {} thread{}, {:.2} CPU seconds",
+                "  {} spp, {}; {}; {} thread{}, {:.2} CPU seconds",
                 Short(self.spp),
                 self.how_it_ended(),
-                100.0 * self.relative_error,
+                self.error_in_words(),
                 self.threads,
                 if self.threads == 1 { "" } else { "s" },
                 self.cpu_seconds,
@@ -176,6 +176,14 @@ impl Statistics {
             ));
         }
         lines.join("\n")
+    }
+
+    fn error_in_words(&self) -> String {
+        if self.relative_error.is_finite() {
+            format!("pixel error {:.2} % of the mean", 100.0 * self.relative_error)
+        } else {
+            "the pixel error shows from two samples on".into()
+        }
     }
 
     fn how_it_ended(&self) -> &'static str {
