@@ -257,8 +257,12 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
     let ng = unit_normal(e1, e2);
     let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(ng) > 0.999;
     let closes = (b + e2 - far).length() <= 4.0 * f32::EPSILON * size;
-    (closes && same_side && second.contains(&b) && second.contains(&c))
-        .then(|| EmitterShape::Parallelogram { a, e1, e2, ng: if mesh.reversed { -ng } else { ng } })
+    (closes && same_side && second.contains(&b) && second.contains(&c)).then(|| EmitterShape::Parallelogram {
+        a,
+        e1,
+        e2,
+        ng: if mesh.reversed { -ng } else { ng },
+    })
 }
 
 fn inline_mesh(mesh: &MeshDesc) -> Mesh {
@@ -292,12 +296,18 @@ fn cube() -> Mesh {
     let sign = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
     let positions = (0..8u32).map(|i| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4))).collect();
     let indices = vec![
-        [0, 2, 1], [1, 2, 3], // z = −1
-        [4, 5, 6], [5, 7, 6], // z = +1
-        [0, 1, 4], [1, 5, 4], // y = −1
-        [2, 6, 3], [3, 6, 7], // y = +1
-        [0, 4, 2], [2, 4, 6], // x = −1
-        [1, 3, 5], [3, 7, 5], // x = +1
+        [0, 2, 1],
+        [1, 2, 3], // z = −1
+        [4, 5, 6],
+        [5, 7, 6], // z = +1
+        [0, 1, 4],
+        [1, 5, 4], // y = −1
+        [2, 6, 3],
+        [3, 6, 7], // y = +1
+        [0, 4, 2],
+        [2, 4, 6], // x = −1
+        [1, 3, 5],
+        [3, 7, 5], // x = +1
     ];
     Mesh { positions, indices, normals: Vec::new(), uvs: Vec::new(), reversed: false }
 }
