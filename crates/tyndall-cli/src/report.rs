@@ -52,6 +52,8 @@ pub(crate) struct Statistics {
     pub(crate) truncated_paths: u64,
     /// Throughput that they still carried, a path: the energy lost where everything around shines with radiance 1.
     pub(crate) energy_lost_to_limit: f64,
+    /// Paths that left a medium without meeting its boundary, by rounding, and ended there.
+    pub(crate) leaks: u64,
     /// Samples that were not a radiance (NaN, infinite or negative) and count as zero.
     pub(crate) non_finite_samples: u64,
     /// The first of them.
@@ -132,6 +134,7 @@ impl Statistics {
             ns_per_collision: (tally.collisions > 0).then(|| 1e9 * course.cpu_seconds / tally.collisions as f64),
             truncated_paths: tally.truncated_paths,
             energy_lost_to_limit: tally.truncated_throughput / tally.paths.max(1) as f64,
+            leaks: tally.leaks,
             non_finite_samples: tally.bad_samples,
             non_finite_list: tally.bad_sample_list.iter().map(BadSample::from).collect(),
         }
@@ -164,6 +167,9 @@ impl Statistics {
                 count(self.truncated_paths),
                 self.energy_lost_to_limit,
             ));
+        }
+        if self.leaks > 0 {
+            lines.push(format!("  warning: {} paths left a medium without meeting its boundary", count(self.leaks)));
         }
         if let Some(first) = self.non_finite_list.first() {
             lines.push(format!(
