@@ -1,9 +1,9 @@
 //! `cargo xtask bench rays`: our rays beside Embree's, on one thread.
 //!
-//! A bumpy ball of 101,568 triangles and 131,072 rays of each kind, seeded. The two engines take turns; what is
-//! printed is the median of 11 rates and the median of the 11 ratios, so that a busy machine disturbs both alike.
-//! Embree is run with its robust flag. It is looked for in `target/venv` (`python3 -m venv target/venv &&
-//! target/venv/bin/pip install embreex`); without it, only our rates are printed.
+//! A bumpy ball of 101,568 triangles and 131,072 rays of each kind, seeded, 11 times over. The two engines take turns
+//! of 256 rays; what is printed is the median rate and the median ratio of neighbouring turns, so that a busy machine
+//! disturbs both alike. Embree is run with its robust flag. It is looked for in `target/venv` (`python3 -m venv
+//! target/venv && target/venv/bin/pip install embreex`); without it, only our rates are printed.
 
 use std::{
     hint::black_box,
@@ -13,9 +13,10 @@ use std::{
 };
 
 use anyhow::{Result, ensure};
+use glam::{DMat4, DVec3};
 use tyndall::{
     math::{Ray, Transform, Vec3},
-    shape::{Geometry, GeometryBuilder, Mesh},
+    shape::{Geometry, GeometryBuilder, Mesh, Sphere},
 };
 
 use self::meshes::{Random, at_seam, displaced_sphere};
@@ -27,6 +28,8 @@ mod meshes;
 
 const RAYS: usize = 131_072;
 const ROUNDS: usize = 11;
+/// Rays in a row by one engine before it is the other's turn: less than a slice of a busy machine's time.
+const TURN: usize = 256;
 
 struct Case {
     name: &'static str,
@@ -49,17 +52,15 @@ pub(crate) fn run() -> Result<()> {
     builder.add_mesh(mesh.clone(), &Transform::IDENTITY, false)?;
     let ours = builder.build()?;
     println!("{} triangles, built in {:.3} s", mesh.indices.len(), start.elapsed().as_secs_f64());
-    let theirs = match find_embree() {
-        Some(path) => Some(embree::Scene::new(&path, &mesh)?),
-        None => {
-            println!("no Embree in target/venv: only our rays");
-            None
-        }
-    };
+    let theirs = find_embree().map(|path| embree::Scene::new(&path, &mesh)).transpose()?;
+    if theirs.is_none() {
+        println!("no Embree in target/venv: only our rays");
+    }
     println!("{:<22} {:>10} {:>10} {:>7}", "[Mrays/s]", "tyndall", "Embree", "ratio");
     for case in cases(&mesh) {
         compare(&case, &ours, theirs.as_ref());
     }
+    spheres()?;
     clearance(&ours);
     leaks(&mesh, &ours, theirs.as_ref());
     Ok(())
@@ -93,35 +94,71 @@ fn cases(mesh: &Mesh) -> Vec<Case> {
     ]
 }
 
-/// Time for all rays of a case [s], and how many of them hit.
-fn time(case: &Case, intersect: impl Fn(&Ray, f32) -> Option<f32>) -> (f64, usize) {
+/// Time per ray [s], and how many rays hit.
+fn time(rays: &[(Ray, f32)], intersect: impl Fn(&Ray, f32) -> Option<f32>) -> (f64, usize) {
     let start = Instant::now();
-    let hits = case.rays.iter().filter(|(ray, t_max)| black_box(intersect(ray, *t_max)).is_some()).count();
-    (start.elapsed().as_secs_f64(), hits)
+    let hits = rays.iter().filter(|(ray, t_max)| black_box(intersect(ray, *t_max)).is_some()).count();
+    (start.elapsed().as_secs_f64() / rays.len() as f64, hits)
 }
 
 fn compare(case: &Case, ours: &Geometry, theirs: Option<&embree::Scene>) {
-    let ours = |ray: &Ray, t_max| ours.intersect(ray, t_max).map(|hit| hit.t);
-    let rate = |seconds: &[f64]| case.rays.len() as f64 / median(seconds) * 1e-6;
-    let (mut a, mut b, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut our_hits, mut their_hits) = (0, 0);
-    for _ in 0..ROUNDS {
-        let seconds;
-        (seconds, our_hits) = time(case, ours);
+    let (mut a, mut b, mut ratios, mut hits) = (Vec::new(), Vec::new(), Vec::new(), (0, 0));
+    for rays in (0..ROUNDS).flat_map(|_| case.rays.chunks(TURN)) {
+        let (seconds, found) = time(rays, |ray, t_max| ours.intersect(ray, t_max).map(|hit| hit.t));
         a.push(seconds);
+        hits.0 += found;
         if let Some(theirs) = theirs {
-            let seconds;
-            (seconds, their_hits) = time(case, |ray, t_max| theirs.intersect(ray, t_max));
-            b.push(seconds);
-            ratios.push(seconds / a[a.len() - 1]);
+            let (other, found) = time(rays, |ray, t_max| theirs.intersect(ray, t_max));
+            b.push(other);
+            ratios.push(other / seconds);
+            hits.1 += found;
         }
     }
+    let rate = |seconds: &[f64]| 1e-6 / median(seconds);
     if theirs.is_some() {
         let (ours, theirs, ratio) = (rate(&a), rate(&b), median(&ratios));
+        let (our_hits, their_hits) = (hits.0 / ROUNDS, hits.1 / ROUNDS);
         println!("{:<22} {ours:>10.2} {theirs:>10.2} {ratio:>7.2}   hits {our_hits} {their_hits}", case.name);
     } else {
-        println!("{:<22} {:>10.2}   hits {our_hits}", case.name, rate(&a));
+        println!("{:<22} {:>10.2}   hits {}", case.name, rate(&a), hits.0 / ROUNDS);
     }
+}
+
+/// Many small balls: direct, and as instances of one.
+fn spheres() -> Result<()> {
+    for (count, instanced) in [(2_000, false), (200_000, false), (200_000, true)] {
+        let random = &mut Random(4);
+        let radius = 0.7 / f64::from(count).cbrt();
+        let mut builder = GeometryBuilder::new();
+        let group = instanced.then(|| builder.begin_group());
+        if instanced {
+            builder.add_sphere(Sphere::new(Vec3::ZERO, 1.0), &Transform::IDENTITY, false)?;
+            builder.end_group();
+        }
+        for _ in 0..count {
+            let centre = random.in_ball();
+            match group {
+                None => {
+                    builder.add_sphere(Sphere::new(centre, radius as f32), &Transform::IDENTITY, false)?;
+                }
+                Some(group) => {
+                    let matrix = DMat4::from_translation(centre.as_dvec3()) * DMat4::from_scale(DVec3::splat(radius));
+                    builder.add_instance(group, &Transform::new(matrix).unwrap_or_default())?;
+                }
+            }
+        }
+        let geometry = builder.build()?;
+        let rays: Vec<Ray> = (0..RAYS).map(|_| Ray::new(random.in_ball(), random.dir())).collect();
+        let mut seconds = Vec::new();
+        for rays in rays.chunks(TURN) {
+            let start = Instant::now();
+            black_box(rays.iter().filter(|ray| geometry.intersect(ray, f32::INFINITY).is_some()).count());
+            seconds.push(start.elapsed().as_secs_f64() / TURN as f64);
+        }
+        let name = if instanced { "spheres, instanced" } else { "spheres" };
+        println!("{name:<22} {:>10.2}   {count}", 1e-6 / median(&seconds));
+    }
+    Ok(())
 }
 
 fn clearance(ours: &Geometry) {

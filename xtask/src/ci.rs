@@ -12,7 +12,7 @@ pub(crate) fn run() -> Result<()> {
     let mut stages = Stages::new("ci");
     stages.stage("tidy", tidy::run)?;
     stages.stage("format", || tee(&mut cargo("fmt --all --check")))?;
-    stages.stage("lints", || tee(&mut cargo("clippy --workspace --all-targets -- -D warnings")))?;
+    stages.stage("lints", || tee(&mut cargo("clippy --workspace --all-targets --all-features -- -D warnings")))?;
     stages.stage("docs", docs::check)?;
     let tests = stages.stage("tests", || run_tests(Which::Quick))?;
     let doc_tests = stages.stage("doc-tests", || Ok(Counts::read(&tee(&mut cargo("test --doc --workspace"))?)))?;

@@ -2,13 +2,16 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
 mod bench;
+#[cfg(feature = "rays")]
 mod bench_rays;
 mod ci;
-mod embree;
 mod docs;
+#[cfg(feature = "rays")]
+mod embree;
 mod peers;
 mod shell;
 mod tidy;
+mod venv;
 
 use std::process::ExitCode;
 

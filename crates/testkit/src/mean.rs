@@ -1,7 +1,7 @@
 //! Means with their standard errors, and whether they are what they should be.
 //!
 //! `z = (mean − expected) / standard error` is standard normal for large samples: `p = erfc(|z|/√2)`.
-//! Running sums: Welford 1962; merging: Chan, Golub and LeVeque 1983.
+//! Running sums: Welford 1962.
 
 use std::fmt;
 

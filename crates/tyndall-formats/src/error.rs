@@ -22,7 +22,11 @@ use crate::source::{SourceMap, Span};
 /// Faults drawn in full; the rest is counted.
 const MOST_SHOWN: usize = 20;
 /// Faults kept in memory: a hostile file can have millions.
-const MOST_KEPT: usize = 10_000;
+const MOST_KEPT: usize = 4_000;
+/// Candidates that a misspelt word is compared with.
+const MOST_CANDIDATES: usize = 500;
+/// Candidates that are listed when none is near.
+const MOST_LISTED: usize = 20;
 /// Longer lines are not drawn, only located \[bytes\].
 const LONGEST_LINE: usize = 1 << 16;
 
@@ -62,10 +66,11 @@ impl SceneError {
         if let Some(near) = nearest(word, candidates.clone()) {
             return self.help(format!("did you mean \"{near}\"?"));
         }
-        let known: Vec<_> = candidates.into_iter().map(|c| format!("\"{c}\"")).collect();
+        let known: Vec<_> = candidates.into_iter().take(MOST_LISTED + 1).map(|c| format!("\"{c}\"")).collect();
         match known.len() {
             0 => self,
             1 => self.help(format!("the only one known is {}", known[0])),
+            more if more > MOST_LISTED => self.help("check its spelling"),
             _ => self.help(format!("known are {}", known.join(", "))),
         }
     }
@@ -81,12 +86,15 @@ impl SceneError {
 /// The candidate that `word` was probably meant to be: another case or an edit distance of at most a third of its length.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Words are short; a longer one is not a slip of the pen, and comparing costs the product of the lengths.
-    if word.len() > 64 {
+    let is_short = |word: &str| word.len() <= 64;
+    if !is_short(word) {
         return None;
     }
     let lower = word.to_lowercase();
     candidates
         .into_iter()
+        .take(MOST_CANDIDATES)
+        .filter(|candidate| is_short(candidate))
         .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
         .filter(|&(distance, candidate)| distance <= (candidate.chars().count() / 3).max(1))
         .min_by_key(|&(distance, _)| distance)
@@ -122,6 +130,11 @@ impl ErrorList {
         }
     }
 
+    /// Whether there are as many faults as are kept: reading on is of no use.
+    pub fn is_full(&self) -> bool {
+        self.errors.len() >= MOST_KEPT
+    }
+
     /// Whether nothing is wrong.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
@@ -140,8 +153,9 @@ impl ErrorList {
         if self.is_empty() { Ok((value, sources)) } else { Err(self.into_diagnostics(sources)) }
     }
 
-    /// All faults with the texts they are in.
-    pub fn into_diagnostics(self, sources: SourceMap) -> Diagnostics {
+    /// All faults with the texts they are in, from top to bottom.
+    pub fn into_diagnostics(mut self, sources: SourceMap) -> Diagnostics {
+        self.errors.sort_by_key(|e| e.span.map(|s| (s.file, s.start)));
         Diagnostics { errors: self.errors, dropped: self.dropped, sources }
     }
 }
@@ -149,7 +163,7 @@ impl ErrorList {
 /// The faults of a scene, ready to be shown.
 #[derive(Clone, Debug)]
 pub struct Diagnostics {
-    /// The faults, in the order found.
+    /// The faults: those without a place, then by file and place.
     pub errors: Vec<SceneError>,
     /// How many more there were.
     pub dropped: usize,
@@ -179,6 +193,9 @@ impl Diagnostics {
         let rest = self.errors.len() - shown + self.dropped;
         if rest > 0 {
             out.push(format!("and {rest} more"));
+        }
+        if self.errors.len() >= MOST_KEPT {
+            out.push("too many faults: the rest of the scene was not read".into());
         }
         out.join("\n\n")
     }

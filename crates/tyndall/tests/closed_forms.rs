@@ -148,7 +148,13 @@ fn slabs_reflect_and_transmit_as_adding_doubling_says() {
             let absorption = case.albedo.map(|a| (1.0 - a) * case.tau);
             world.slab(1.0, skin, medium(absorption, scattering, case.g));
             world.half_sky(above, below);
-            let name = format!("tau {} g {} n {} from {}", case.tau, case.g, case.n, if above > 0.0 { "above" } else { "below" });
+            let name = format!(
+                "tau {} g {} n {} from {}",
+                case.tau,
+                case.g,
+                case.n,
+                if above > 0.0 { "above" } else { "below" }
+            );
             let precision = if expected.iter().any(|e| *e < 0.02) { 0.1 } else { 0.02 };
             assert_mean(&name, &world.measure(&VolPath::default(), 60_000), expected, precision);
         }
@@ -173,7 +179,14 @@ fn slab_cases() -> Vec<SlabCase> {
         .map(|line| line.split(',').collect())
         .collect();
     let number = |row: &[&str], column: usize| row[column].parse::<f64>().unwrap();
-    let wanted = [("1", "0", "1"), ("1", "0.9", "1"), ("5", "0", "1.5"), ("1", "-0.5", "1"), ("5", "0.5", "1.33"), ("20", "0.8", "1.4")];
+    let wanted = [
+        ("1", "0", "1"),
+        ("1", "0.9", "1"),
+        ("5", "0", "1.5"),
+        ("1", "-0.5", "1"),
+        ("5", "0.5", "1.33"),
+        ("20", "0.8", "1.4"),
+    ];
     let mut cases = Vec::new();
     for (tau, g, n) in wanted {
         let matching: Vec<_> = rows.iter().filter(|r| r[1] == tau && r[2] == g && r[3] == n && r[0] != "0").collect();

@@ -1,5 +1,6 @@
 //! `cargo xtask bench`: the figures that tyndall promises, measured on this machine, peers in the same minutes.
 
+mod rays;
 mod scenes;
 mod startup;
 mod threads;
@@ -13,6 +14,8 @@ use crate::shell::root;
 /// What to measure; everything if nothing is named.
 #[derive(Debug, Clone, Copy, Subcommand)]
 pub(crate) enum Bench {
+    /// Rays a second beside Embree 4.4 robust (at least 0.9 times on incoherent rays)
+    Rays,
     /// Efficiency on the Cornell and fog boxes against both backends of Mitsuba (at least 1.5 times the better)
     Scenes,
     /// Time of `tyndall render` of a tiny scene (under 50 ms)
@@ -25,15 +28,13 @@ pub(crate) enum Bench {
 pub(crate) fn run(bench: Option<Bench>) -> Result<()> {
     std::fs::create_dir_all(root().join("target/bench"))?;
     println!("machine: {}", machine());
-    let tyndall = Tyndall::build()?;
     match bench {
-        Some(Bench::Scenes) => scenes::run(&tyndall),
-        Some(Bench::Startup) => startup::run(&tyndall),
-        Some(Bench::Threads) => threads::run(&tyndall),
+        Some(Bench::Rays) => rays::run(),
+        Some(Bench::Scenes) => scenes::run(&Tyndall::build()?),
+        Some(Bench::Startup) => startup::run(&Tyndall::build()?),
+        Some(Bench::Threads) => threads::run(&Tyndall::build()?),
         None => {
-            startup::run(&tyndall)?;
-            threads::run(&tyndall)?;
-            scenes::run(&tyndall)
+            [Bench::Startup, Bench::Threads, Bench::Rays, Bench::Scenes].into_iter().try_for_each(|one| run(Some(one)))
         }
     }
 }

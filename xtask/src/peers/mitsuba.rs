@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::image::Image;
 use super::runs::{Runs, Turn};
 use super::settings::{Duel, Variant};
-use crate::shell::{answers, output, root, tee};
+use crate::shell::{output, root};
+use crate::venv::python_with;
 
 /// The version that the figures of this repository were measured against.
 const PACKAGES: [&str; 2] = ["mitsuba==3.9.1", "numpy"];
@@ -36,13 +37,7 @@ struct Account {
 impl Mitsuba {
     /// Finds it, or installs it.
     pub(crate) fn install() -> Result<Self> {
-        let venv = root().join("target/venv");
-        let python = venv.join("bin/python");
-        if !answers(Command::new(&python).args(["-c", "import mitsuba, numpy"])) {
-            eprintln!("installing {} in {}", PACKAGES.join(", "), venv.display());
-            tee(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
-            tee(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(PACKAGES))?;
-        }
+        let python = python_with("mitsuba, numpy", &PACKAGES)?;
         Ok(Self { python, has_llvm: install_llvm() })
     }
 

@@ -83,7 +83,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         }
     }
 
-    let level = statistics::sidak_level(FALSE_ALARM, duels.len().max(1));
+    let level = testkit::sidak(FALSE_ALARM, duels.len());
     let table = report::tables(&duels, &colours, level);
     println!("{table}");
     let directory = directory("")?;

@@ -34,7 +34,7 @@ pub(crate) struct Duel {
     pub(crate) parameters: &'static str,
     /// Samples a pixel in one run of Mitsuba: about 3 CPU seconds
     pub(crate) mitsuba_spp: u32,
-    /// Samples a pixel in one run of tyndall
+    /// Samples a pixel in one run of tyndall: about as long
     pub(crate) tyndall_spp: u32,
 }
 
@@ -54,16 +54,16 @@ pub(crate) fn duels() -> Vec<Duel> {
         tyndall_spp,
     };
     vec![
-        duel("g_cornell", Llvm, "integrator=path", 256, 256),
-        duel("d_fog_box", Llvm, "integrator=volpath", 64, 64),
-        duel("f_grains", Scalar, "integrator=path", 32, 32),
-        duel("f2_grains_direct", Scalar, "integrator=path", 40, 40),
-        duel("b_marble_cube_matched", Scalar, DEEP, 12, 12),
-        duel("b2_furnace_matched", Scalar, DEEP_IN_GLASS, 24, 24),
-        duel("b3_grey_matched", Scalar, "integrator=volpath rr_depth=1000000", 12, 12),
-        duel("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 8),
-        duel("a2_marble_cube_spot", Scalar, DEEP_IN_GLASS, 2, 8),
-        duel("a3_marble_cube_rough_spot", Scalar, DEEP_IN_GLASS, 8, 8),
-        duel("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 2),
+        duel("g_cornell", Llvm, "integrator=path", 256, 64),
+        duel("d_fog_box", Llvm, "integrator=volpath", 64, 32),
+        duel("f_grains", Scalar, "integrator=path", 32, 24),
+        duel("f2_grains_direct", Scalar, "integrator=path", 40, 24),
+        duel("b_marble_cube_matched", Scalar, DEEP, 12, 6),
+        duel("b2_furnace_matched", Scalar, DEEP_IN_GLASS, 24, 10),
+        duel("b3_grey_matched", Scalar, "integrator=volpath rr_depth=1000000", 12, 6),
+        duel("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 6),
+        duel("a2_marble_cube_spot", Scalar, DEEP_IN_GLASS, 2, 2),
+        duel("a3_marble_cube_rough_spot", Scalar, DEEP_IN_GLASS, 8, 6),
+        duel("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 3),
     ]
 }

@@ -52,7 +52,7 @@ pub(crate) struct Agreement {
 impl Agreement {
     /// The smallest probability of the three tests, corrected for their number.
     pub(crate) fn p(&self) -> f64 {
-        sidak(self.extreme_p.min(self.chi_square_p).min(self.mean_p), 3)
+        family_p(self.extreme_p.min(self.chi_square_p).min(self.mean_p), 3)
     }
 }
 
@@ -85,15 +85,15 @@ pub(crate) fn compare(first: &[Image], second: &[Image]) -> Result<Agreement> {
             }
         }
         found.tests += sum_of_squares.terms;
-        found.chi_square_p = found.chi_square_p.min(sidak(sum_of_squares.chi_square_p(), 3));
+        found.chi_square_p = found.chi_square_p.min(family_p(sum_of_squares.chi_square_p(), 3));
 
         let whole = |image: &Image| window_mean(image, 0, 0, usize::MAX, channel);
         let (a, b) = (moments(first, whole), moments(second, whole));
         found.ratio[channel] = ratio(&a, &b);
-        found.mean_p = found.mean_p.min(sidak(welch_z(&a, &b).map_or(1.0, two_sided_p), 3));
+        found.mean_p = found.mean_p.min(family_p(welch_z(&a, &b).map_or(1.0, two_sided_p), 3));
     }
     if found.tests > 0 {
-        found.extreme_p = sidak(two_sided_p(found.extreme_z), found.tests);
+        found.extreme_p = family_p(two_sided_p(found.extreme_z), found.tests);
     }
     Ok(found)
 }
@@ -107,14 +107,10 @@ pub(crate) fn mean_squared_error(runs: &[Image]) -> f64 {
     variances.sum::<f64>() / (3 * pixels) as f64
 }
 
-/// The probability that the smallest of `count` independent uniform values is below `p`: `1 − (1 − p)^count`.
-pub(crate) fn sidak(p: f64, count: usize) -> f64 {
+/// The probability that the smallest of `count` independent uniform values is below `p`: `1 − (1 − p)^count`. Šidák's
+/// correction of a probability, as [`testkit::sidak`] is of a level.
+fn family_p(p: f64, count: usize) -> f64 {
     -(count as f64 * (-p).ln_1p()).exp_m1()
-}
-
-/// The level of each of `count` tests such that the whole family complains falsely with probability `level`.
-pub(crate) fn sidak_level(level: f64, count: usize) -> f64 {
-    -((-level).ln_1p() / count as f64).exp_m1()
 }
 
 /// The middle of the values; the mean of the two middle ones if their number is even.
@@ -201,26 +197,15 @@ impl Sum {
 
 #[cfg(test)]
 mod tests {
+    use testkit::Stream;
+
     use super::*;
-
-    /// Uniform numbers in [0, 1): Steele, Lea and Flood (2014), SplitMix64.
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut bits = self.0;
-            bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        }
-    }
 
     /// Runs of 128² pixels with exponential noise of mean `mean(x, y)`: the standard deviation of a pixel is its mean.
     fn noisy_runs(seed: u64, runs: usize, mean: impl Fn(usize, usize) -> f64) -> Vec<Image> {
-        let mut random = Random(seed);
+        let mut random = Stream::new(seed);
         let mut image = || {
-            let mut pixel = |index: usize| mean(index % 128, index / 128) * -(1.0 - random.next()).ln();
+            let mut pixel = |index: usize| mean(index % 128, index / 128) * -(1.0 - random.next_f64()).ln();
             let pixels = (0..128 * 128).map(|index| [(); 3].map(|()| pixel(index) as f32)).collect();
             Image { width: 128, height: 128, pixels }
         };
@@ -309,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_family_of_tests_at_its_level_complains_as_rarely_as_one() {
-        assert!((sidak(sidak_level(0.01, 11), 11) - 0.01).abs() < 1e-12);
+        assert!((family_p(testkit::sidak(0.01, 11), 11) - 0.01).abs() < 1e-12);
     }
 
     #[test]

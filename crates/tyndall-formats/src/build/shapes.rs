@@ -31,6 +31,27 @@ struct Gathered<'a> {
     emitters: Vec<(ObjectId, &'a AreaLightDesc)>,
 }
 
+/// The normals of a mesh from a file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Normals {
+    /// Each face is flat.
+    Flat,
+    /// Those of the file, if it has any.
+    AsGiven,
+    /// Those of the file, or else averages over the faces at a vertex.
+    Smooth,
+}
+
+impl Normals {
+    fn asked(flat: bool, smooth: bool) -> Self {
+        match (flat, smooth) {
+            (true, _) => Self::Flat,
+            (false, true) => Self::Smooth,
+            (false, false) => Self::AsGiven,
+        }
+    }
+}
+
 impl<'a> Builder<'a> {
     pub(super) fn shapes(&mut self) -> Option<Shapes> {
         let desc = self.desc;
@@ -91,12 +112,14 @@ impl<'a> Builder<'a> {
             ShapeKind::BilinearMesh(patches) => {
                 patches_of(patches).map(|patch| builder.add_patch(patch, &transform, reversed)).collect()
             }
-            ShapeKind::Ply { path, face_normals, flip_tex_coords } => {
-                let mesh = self.mesh_file(read_ply(&path.value), path, *face_normals, *flip_tex_coords)?;
+            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+                let normals = Normals::asked(*face_normals, *smooth_normals);
+                let mesh = self.mesh_file(read_ply(&path.value), path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
-            ShapeKind::Obj { path, face_normals, flip_tex_coords } => {
-                let mesh = self.mesh_file(read_obj(&path.value), path, *face_normals, *flip_tex_coords)?;
+            ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
+                let normals = Normals::asked(*face_normals, *smooth_normals);
+                let mesh = self.mesh_file(read_obj(&path.value), path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
@@ -134,16 +157,20 @@ impl<'a> Builder<'a> {
         &mut self,
         mesh: Result<TriangleMesh, MeshError>,
         path: &FileRef,
-        face_normals: bool,
+        normals: Normals,
         flip_tex_coords: bool,
     ) -> Option<Mesh> {
         match mesh {
             Ok(mesh) => {
+                let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
                 let mut uvs = mesh.uvs.unwrap_or_default();
                 if flip_tex_coords {
                     uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
                 }
-                let normals = if face_normals { Vec::new() } else { mesh.normals.unwrap_or_default() };
+                let normals = match normals {
+                    Normals::Flat => Vec::new(),
+                    Normals::AsGiven | Normals::Smooth => mesh.normals.or(smooth).unwrap_or_default(),
+                };
                 Some(Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false })
             }
             Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
@@ -230,8 +257,12 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
     let ng = unit_normal(e1, e2);
     let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(ng) > 0.999;
     let closes = (b + e2 - far).length() <= 4.0 * f32::EPSILON * size;
-    (closes && same_side && second.contains(&b) && second.contains(&c))
-        .then(|| EmitterShape::Parallelogram { a, e1, e2, ng: if mesh.reversed { -ng } else { ng } })
+    (closes && same_side && second.contains(&b) && second.contains(&c)).then(|| EmitterShape::Parallelogram {
+        a,
+        e1,
+        e2,
+        ng: if mesh.reversed { -ng } else { ng },
+    })
 }
 
 fn inline_mesh(mesh: &MeshDesc) -> Mesh {
@@ -265,12 +296,18 @@ fn cube() -> Mesh {
     let sign = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
     let positions = (0..8u32).map(|i| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4))).collect();
     let indices = vec![
-        [0, 2, 1], [1, 2, 3], // z = −1
-        [4, 5, 6], [5, 7, 6], // z = +1
-        [0, 1, 4], [1, 5, 4], // y = −1
-        [2, 6, 3], [3, 6, 7], // y = +1
-        [0, 4, 2], [2, 4, 6], // x = −1
-        [1, 3, 5], [3, 7, 5], // x = +1
+        [0, 2, 1],
+        [1, 2, 3], // z = −1
+        [4, 5, 6],
+        [5, 7, 6], // z = +1
+        [0, 1, 4],
+        [1, 5, 4], // y = −1
+        [2, 6, 3],
+        [3, 6, 7], // y = +1
+        [0, 4, 2],
+        [2, 4, 6], // x = −1
+        [1, 3, 5],
+        [3, 7, 5], // x = +1
     ];
     Mesh { positions, indices, normals: Vec::new(), uvs: Vec::new(), reversed: false }
 }

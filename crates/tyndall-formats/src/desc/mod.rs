@@ -15,7 +15,7 @@
 //! - **The natural normal** of a surface points away from the centre (sphere, cube), along the shape's +z (disk, rectangle),
 //!   or by the right hand around the corners of a triangle in the shape's own space. It is carried to the world as a normal:
 //!   a mirroring matrix does not turn a body inside out. Where vertex normals are given they choose the side.
-//!   [`ShapeDesc::reverse_orientation`] turns it round. "Inside" is the side that the normal points away from.
+//!   [`ShapeDesc::reverse_orientation`] turns it round, vertex normals too. "Inside" is the side that it points away from.
 //! - **Colours** are linear sRGB.
 
 mod camera;

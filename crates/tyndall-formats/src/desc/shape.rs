@@ -56,6 +56,9 @@ pub enum ShapeKind {
         path: FileRef,
         /// Whether normals of the file are left out and each face is flat.
         face_normals: bool,
+        /// Whether a file without normals is shaded with smooth ones, weighted by angle (Mitsuba, unless `face_normals`),
+        /// or flat (pbrt).
+        smooth_normals: bool,
         /// Whether v of the texture coordinates runs the other way.
         flip_tex_coords: bool,
     },
@@ -65,6 +68,9 @@ pub enum ShapeKind {
         path: FileRef,
         /// Whether normals of the file are left out and each face is flat.
         face_normals: bool,
+        /// Whether a file without normals is shaded with smooth ones, weighted by angle (Mitsuba, unless `face_normals`),
+        /// or flat (pbrt).
+        smooth_normals: bool,
         /// Whether v of the texture coordinates runs the other way.
         flip_tex_coords: bool,
     },

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use ::image::{DynamicImage, ImageFormat, ImageReader};
 
-/// The longest side that is read [pixels].
+/// The longest side that is read \[pixels\].
 pub const MAX_SIDE: u32 = 32_768;
 /// The most pixels that are read: 16,384 × 8,192, 1.6 GB.
 pub const MAX_PIXELS: u64 = 1 << 27;

@@ -17,7 +17,7 @@ pub use ply::{parse_ply, read_ply, write_ply};
 /// Triangles over shared vertices, in the file's own frame and winding.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TriangleMesh {
-    /// Where each vertex is [length].
+    /// Where each vertex is \[length\].
     pub positions: Vec<Vec3>,
     /// The three vertices of each triangle, counter-clockwise as seen from outside.
     pub indices: Vec<[u32; 3]>,

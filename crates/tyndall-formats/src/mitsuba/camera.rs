@@ -13,7 +13,7 @@ use crate::desc::{CameraDesc, CropDesc, FilmDesc, FilterDesc, FovAxis, SamplerDe
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-/// The largest film [pixels a side].
+/// The largest film \[pixels a side\].
 const LARGEST_SIDE: u32 = 1 << 16;
 
 /// The camera, its film and its sampler.

@@ -67,19 +67,13 @@ fn read(
 ) -> Result<(SceneDesc, SourceMap), Diagnostics> {
     let mut errors = ErrorList::default();
     let Some(tree) = tree::read(file, overrides, &mut sources, &mut errors) else {
-        return Err(in_order(errors.into_diagnostics(sources)));
+        return Err(errors.into_diagnostics(sources));
     };
     let (scene, errors) = scene::build(&tree, &sources, errors);
     match scene {
-        Some(scene) => errors.finish(scene, sources).map_err(in_order),
-        None => Err(in_order(errors.into_diagnostics(sources))),
+        Some(scene) => errors.finish(scene, sources),
+        None => Err(errors.into_diagnostics(sources)),
     }
-}
-
-/// Parts are not built in the order of the file; faults are read in it.
-fn in_order(mut diagnostics: Diagnostics) -> Diagnostics {
-    diagnostics.errors.sort_by_key(|error| error.span.map(|span| (span.file, span.start)));
-    diagnostics
 }
 
 fn alone(error: SceneError, sources: SourceMap) -> Diagnostics {

@@ -66,7 +66,7 @@ impl<'t> Object<'t> {
                 children.push(Child { element: at, at, used: false });
             } else if let Some(&element) = ids.get(at.text("id")) {
                 children.push(Child { element, at, used: false });
-            } else if let Some(id) = at.attribute("id") {
+            } else if let Some(id) = at.attribute("id").filter(|_| !report.errors.is_full()) {
                 let mut names: Vec<_> = ids.keys().copied().collect();
                 names.sort_unstable();
                 let error = SceneError::at(id.span, format!("nothing has the id \"{}\"", id.value));

@@ -78,9 +78,9 @@ impl<'t> Builder<'t> {
                 };
                 let path = self.file(name);
                 if plugin == "obj" {
-                    ShapeKind::Obj { path, face_normals, flip_tex_coords }
+                    ShapeKind::Obj { path, face_normals, smooth_normals: !face_normals, flip_tex_coords }
                 } else {
-                    ShapeKind::Ply { path, face_normals, flip_tex_coords }
+                    ShapeKind::Ply { path, face_normals, smooth_normals: !face_normals, flip_tex_coords }
                 }
             }
         })

@@ -14,6 +14,10 @@ pub(super) fn transform(element: &Element, errors: &mut ErrorList) -> DMat4 {
             matrix = step * matrix;
         }
     }
+    if !matrix.is_finite() || !matrix.inverse().is_finite() {
+        errors.push(SceneError::at(element.span, "this transform is beyond the range of numbers"));
+        return DMat4::IDENTITY;
+    }
     matrix
 }
 
@@ -37,10 +41,14 @@ fn step_matrix(step: &Element) -> Result<DMat4, SceneError> {
 
 fn rotation(step: &Element) -> Result<DMat4, SceneError> {
     let angle = number(step.text("angle"), step.span_of("angle"))?;
-    let axis = vector(step, 0.0)?.try_normalize().ok_or_else(|| {
-        SceneError::at(step.span, "the axis of the rotation is zero").help("write y=\"1\", for example")
-    })?;
-    Ok(DMat4::from_axis_angle(axis, angle.to_radians()))
+    let axis = vector(step, 0.0)?;
+    // Mitsuba puts the axis into the formula as it is: the matrix of a longer one is no rotation.
+    if (axis.length() - 1.0).abs() > 1e-3 {
+        let length = (axis.length() * 1e4).round() / 1e4;
+        let message = format!("the axis of the rotation is {length} long, and Mitsuba takes it as it is");
+        return Err(SceneError::at(step.span, message).help("its length must be 1"));
+    }
+    Ok(DMat4::from_axis_angle(axis.normalize(), angle.to_radians()))
 }
 
 /// +z to the target, +y near `up`, and so +x to the left of one who looks along +z.

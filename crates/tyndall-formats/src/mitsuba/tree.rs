@@ -150,6 +150,7 @@ impl Reader<'_> {
         if included_from.is_none() && root.tag != "scene" {
             let name = Span::new(file, node.range().start + 1, node.range().start + 1 + root.tag.len());
             self.errors.push(SceneError::at(name, format!("the file holds a <{}>, not a <scene>", root.tag)));
+            return None;
         }
         self.check_version(&root);
         Some(root)

@@ -80,7 +80,8 @@ pub(super) fn is_object(tag: &str) -> bool {
     PLUGINS.iter().any(|plugins| plugins.tag == tag)
 }
 
-/// The plugin of an object, or an error that says whether the word is wrong or only not known yet.
+/// The plugin of an object, or an error that says whether the word is wrong or only not known yet. The parameters of an
+/// unknown plugin cannot be checked, but the plugins inside it can.
 pub(super) fn plugin(element: &Element, report: &mut Report) -> Option<&'static str> {
     let word = element.attribute("type")?;
     let Plugins { tag, known, later } = PLUGINS.iter().find(|plugins| plugins.tag == element.tag)?;
@@ -95,5 +96,8 @@ pub(super) fn plugin(element: &Element, report: &mut Report) -> Option<&'static 
         let error = SceneError::at(word.span, format!("there is no {tag} \"{}\"", word.value));
         error.suggest(&word.value, known.iter().chain(*later).copied())
     });
+    for inside in element.children.iter().filter(|child| is_object(child.tag)) {
+        plugin(inside, report);
+    }
     None
 }

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 
 use super::Reader;
 use super::param::Param;
-use super::params::{Params, quote};
+use super::params::{MAX_PARAMS, Params, quote};
 use super::parser::Statement;
 use super::state::{Block, look_at};
 use crate::desc::{GroupDesc, GroupId, Ignored, InstanceDesc, MediumId, MediumInterface};
@@ -180,7 +180,15 @@ impl Reader {
                 return self.errors.push(error.suggest(word, ["shape", "light", "material", "medium", "texture"]));
             }
         };
-        Rc::make_mut(list).extend(s.params.into_iter().map(Param::inherit));
+        let list = Rc::make_mut(list);
+        list.extend(s.params.into_iter().map(Param::inherit));
+        if list.len() > MAX_PARAMS {
+            list.truncate(MAX_PARAMS);
+            let message = format!("Attribute has set more than {MAX_PARAMS} parameters");
+            self.errors.push(
+                SceneError::at(s.whole, message).help("set them in a scope, between AttributeBegin and AttributeEnd"),
+            );
+        }
     }
 
     fn begin(&mut self, block: Block, span: Span) {

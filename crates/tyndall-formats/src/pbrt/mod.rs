@@ -1,7 +1,7 @@
 //! pbrt-v4 scenes.
 //!
-//! [`lexer`] makes words of a text, [`parser`] statements of the words, [`directives`] carries them out one after the other
-//! on the graphics state ([`state`]), and what they make goes into the [`SceneDesc`]. Includes are read where they stand,
+//! `lexer` makes words of a text, `parser` statements of the words, `directives` carries them out one after the other
+//! on the graphics state (`state`), and what they make goes into the [`SceneDesc`]. Includes are read where they stand,
 //! relative to the directory of the scene file.
 //!
 //! Where we differ from pbrt-v4 on purpose:
@@ -133,7 +133,9 @@ impl Reader {
         let Some(text) = self.sources.get(file).map(|f| Arc::clone(&f.text)) else { return };
         self.open.push((path, from));
         let mut parser = Parser::new(file, &text);
-        while let Some(statement) = parser.next_statement(&mut self.errors) {
+        while !self.errors.is_full()
+            && let Some(statement) = parser.next_statement(&mut self.errors)
+        {
             self.execute(statement);
         }
         self.open.pop();
@@ -163,6 +165,10 @@ impl Reader {
 
     /// The scene, if nothing was wrong.
     fn finish(mut self, start: Span) -> Result<(SceneDesc, SourceMap), Diagnostics> {
+        if self.errors.is_full() {
+            // Reading stopped early: what is missing at the end says nothing.
+            return Err(self.errors.into_diagnostics(self.sources));
+        }
         for opened in self.state.open_blocks().collect::<Vec<_>>() {
             self.errors.push(SceneError::at(opened, "this block is never ended").help("add its End directive"));
         }

@@ -76,6 +76,9 @@ impl<T> Registry<T> {
     pub(super) fn finish(self, errors: &mut ErrorList) -> Vec<T> {
         let defined: Vec<_> = self.slots.iter().filter(|s| s.definition.is_some() && !s.name.is_empty()).collect();
         for slot in &self.slots {
+            if errors.is_full() {
+                break;
+            }
             if let (None, Some(used)) = (&slot.definition, slot.used) {
                 let message = format!("the {} {} is not defined", self.what, quote(&slot.name));
                 errors.push(SceneError::at(used, message).suggest(&slot.name, defined.iter().map(|s| &*s.name)));

@@ -12,6 +12,9 @@ use crate::desc::{Ignored, SpectrumDesc};
 use crate::error::{ErrorList, SceneError};
 use crate::source::{Span, Spanned};
 
+/// The most parameters of one list: none in the language has as many.
+pub(super) const MAX_PARAMS: usize = 200;
+
 /// A parameter list while something is made of it.
 #[derive(Debug)]
 pub(super) struct Params {
@@ -30,8 +33,11 @@ impl Params {
     /// `defaults` are those of `Attribute` directives; the list comes before them.
     pub(super) fn new(owner: String, span: Span, list: Vec<Param>, defaults: &[Param], dir: &Rc<Path>) -> Self {
         let mut errors = Vec::new();
+        if list.len() > MAX_PARAMS {
+            errors.push(SceneError::at(span, format!("{owner} has more than {MAX_PARAMS} parameters")));
+        }
         let mut kept: Vec<Param> = Vec::with_capacity(list.len());
-        for param in list {
+        for param in list.into_iter().take(MAX_PARAMS) {
             match kept.iter().find(|k| k.name == param.name) {
                 Some(first) => {
                     let message = format!("the parameter \"{}\" is given twice", shorten(&param.name));

@@ -169,5 +169,5 @@ fn ply(p: &mut Params) -> Option<ShapeKind> {
         return None;
     };
     let path = file.map(|name| p.resolve(&name));
-    Some(ShapeKind::Ply { path, face_normals: false, flip_tex_coords: false })
+    Some(ShapeKind::Ply { path, face_normals: false, smooth_normals: false, flip_tex_coords: false })
 }

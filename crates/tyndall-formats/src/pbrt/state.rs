@@ -1,6 +1,6 @@
 //! The graphics state: what the next shape or light takes from the directives before it, and the stack of saved states.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use glam::{DMat4, DVec3};
@@ -12,7 +12,7 @@ use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
 /// The deepest nesting of attribute blocks.
-const MAX_DEPTH: usize = 10_000;
+const MAX_DEPTH: usize = 1_000;
 
 /// What a scope saves and restores.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +49,7 @@ pub(super) enum Block {
 pub(super) struct State {
     pub(super) now: Graphics,
     saved: Vec<(Block, Span, Graphics)>,
-    coordinate_systems: HashMap<String, DMat4>,
+    coordinate_systems: BTreeMap<String, DMat4>,
 }
 
 impl State {
@@ -133,9 +133,7 @@ impl State {
         let word = name.value.as_ref();
         let Some(&matrix) = self.coordinate_systems.get(word) else {
             let error = SceneError::at(name.span, format!("there is no coordinate system {}", quote(word)));
-            let mut known: Vec<&str> = self.coordinate_systems.keys().map(|k| &**k).collect();
-            known.sort_unstable();
-            return Err(error.suggest(word, known));
+            return Err(error.suggest(word, self.coordinate_systems.keys().map(|k| &**k)));
         };
         self.now.ctm = matrix;
         Ok(())

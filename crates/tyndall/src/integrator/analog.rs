@@ -44,7 +44,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             inside.coefficients().map_or((0.0, 0.0), |c| (c.sigma_t.lane(lane), c.sigma_s.lane(lane)));
         let flight = if sigma_t > 0.0 { -sampler.rng.next_positive().ln() / sigma_t } else { f32::INFINITY };
         tally.rays += 1;
-        let hit = scene.geometry.intersect(&ray, flight);
+        let hit = scene.first_surface(&ray, flight);
 
         let (vertex, interface) = match hit {
             None if flight.is_finite() => {
@@ -52,13 +52,20 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                 if sampler.next_1d() * sigma_t >= sigma_s {
                     return radiance; // absorbed
                 }
-                let Inside::Medium { phase, .. } = inside else { return radiance };
-                (Vertex::Medium { p: ray.at(flight), dir: ray.dir, phase }, None)
+                let Inside::Medium { id, phase, .. } = inside else { return radiance };
+                let p = ray.at(flight);
+                if !scene.may_contain(id, p) {
+                    tally.leaks += 1;
+                    return radiance;
+                }
+                (Vertex::Medium { p, dir: ray.dir, phase }, None)
             }
             None => {
-                let sky = scene.lights.environments.iter().map(|id| {
-                    scene.lights.get(*id).le_from_infinity(ray.dir, w).lane(lane)
-                });
+                let sky = scene
+                    .lights
+                    .environments
+                    .iter()
+                    .map(|id| scene.lights.get(*id).le_from_infinity(ray.dir, w).lane(lane));
                 return radiance + throughput * sky.sum::<f32>();
             }
             Some(hit) => {

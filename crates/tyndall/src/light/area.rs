@@ -96,8 +96,10 @@ impl EmitterShape {
         match *self {
             Self::Triangle { a, e1, e2, .. } => Bounds::of([a, a + e1, a + e2]),
             Self::Parallelogram { a, e1, e2, .. } => Bounds::of([a, a + e1, a + e2, a + e1 + e2]),
-            Self::Sphere { centre, radius, .. } | Self::Disk { centre, radius, .. } => {
-                Bounds { min: centre - radius, max: centre + radius }
+            Self::Sphere { centre, radius, .. } => Bounds { min: centre - radius, max: centre + radius },
+            Self::Disk { centre, radius, ng, .. } => {
+                let reach = (Vec3::ONE - ng * ng).max(Vec3::ZERO).map(f32::sqrt) * radius;
+                Bounds { min: centre - reach, max: centre + reach }
             }
         }
     }

@@ -11,7 +11,10 @@ use glam::DVec3;
 
 use super::{
     Disk, Geometry, Patch, Shape, Sphere,
-    bvh::{Child, Content, NONE, Node, Primitive, Tree},
+    bvh::{
+        Content, NONE, Node, Packet, Primitive, Tree,
+        traverse::{Stack, open},
+    },
     instance::Placement,
 };
 use crate::math::Vec3;
@@ -144,25 +147,23 @@ fn to_sphere(centre: Vec3, radius: f32, p: DVec3) -> f64 {
 #[inline(always)]
 fn search<S: Simd>(simd: S, tree: &Tree, p: DVec3, cap: f64, mut visit: impl FnMut(&Primitive, f64) -> f64) -> f64 {
     let mut nearest = cap;
-    let Some(root) = tree.root else { return nearest };
+    let Some(mut child) = tree.root else { return nearest };
     let point = p.as_vec3();
-    let mut stack = vec![(0f32, root)];
-    while let Some((square, child)) = stack.pop() {
-        if f64::from(square) >= nearest * nearest {
-            continue;
-        }
+    let mut stack = Stack::new();
+    loop {
+        let limit = ((nearest * nearest) as f32).next_up();
         match child.content() {
             Content::Node(index) => {
                 let node = &tree.nodes[index];
-                open(&mut stack, node, &squares_to_boxes(simd, node, point), nearest);
+                let (mask, squares) = near_boxes(simd, node, point, limit);
+                if let Some(first) = open(node, mask, &squares, &mut stack) {
+                    child = first;
+                    continue;
+                }
             }
             Content::Packets { first, count } => {
                 for packet in &tree.packets[first..first + count] {
-                    for lane in 0..8 {
-                        let triangle = packet.triangle(lane).map(Vec3::as_dvec3);
-                        let slack = SLACK * (p - triangle[0]).abs().max_element();
-                        nearest = nearest.min(to_triangle_squared(triangle, p).sqrt() - slack);
-                    }
+                    nearest = nearest.min(to_packet(simd, packet, p, limit));
                 }
             }
             Content::Others { first, count } => {
@@ -174,38 +175,65 @@ fn search<S: Simd>(simd: S, tree: &Tree, p: DVec3, cap: f64, mut visit: impl FnM
         if nearest <= 0.0 {
             return 0.0;
         }
-    }
-    nearest
-}
-
-/// Puts the boxes nearer than `nearest` onto the stack, the nearest last.
-#[inline(always)]
-fn open(stack: &mut Vec<(f32, Child)>, node: &Node, squares: &[f32; 8], nearest: f64) {
-    let base = stack.len();
-    for (&square, &child) in squares.iter().zip(&node.child) {
-        if f64::from(square) < nearest * nearest {
-            let at = base + stack[base..].partition_point(|&(other, _)| other > square);
-            stack.insert(at, (square, child));
+        match stack.pop(((nearest * nearest) as f32).next_up()) {
+            Some(next) => child = next,
+            None => return nearest,
         }
     }
 }
 
-/// Lower bounds on the squared distances to the eight boxes.
+/// The children whose squared distance may be below `limit`, and a lower bound on it.
 #[inline(always)]
-fn squares_to_boxes<S: Simd>(simd: S, node: &Node, p: Vec3) -> [f32; 8] {
-    let (x, y, z) = (beside(simd, node, p, 0), beside(simd, node, p, 1), beside(simd, node, p, 2));
-    ((x * x + y * y + z * z) * f32x8::splat(simd, 1.0 - 8.0 * f32::EPSILON)).into()
+fn near_boxes<S: Simd>(simd: S, node: &Node, p: Vec3, limit: f32) -> (u32, [f32; 8]) {
+    let [x0, x1, y0, y1, z0, z1] = &node.planes;
+    let x = beside(simd, f32x8::simd_from(simd, *x0), f32x8::simd_from(simd, *x1), p.x);
+    let y = beside(simd, f32x8::simd_from(simd, *y0), f32x8::simd_from(simd, *y1), p.y);
+    let z = beside(simd, f32x8::simd_from(simd, *z0), f32x8::simd_from(simd, *z1), p.z);
+    let squares = sum_of_squares(simd, x, y, z);
+    (squares.simd_lt(f32x8::splat(simd, limit)).to_bitmask() as u32, squares.into())
 }
 
-/// How far `p` is beside the eight boxes along an axis.
+/// Rounded down: by more than five roundings can add.
 #[inline(always)]
-fn beside<S: Simd>(simd: S, node: &Node, p: Vec3, axis: usize) -> f32x8<S> {
+fn sum_of_squares<S: Simd>(simd: S, x: f32x8<S>, y: f32x8<S>, z: f32x8<S>) -> f32x8<S> {
+    (x * x + y * y + z * z) * f32x8::splat(simd, 1.0 - 8.0 * f32::EPSILON)
+}
+
+/// How far `p` is beside eight intervals.
+#[inline(always)]
+fn beside<S: Simd>(simd: S, least: f32x8<S>, greatest: f32x8<S>, p: f32) -> f32x8<S> {
     // In local space the point itself is rounded.
-    let slack = f32x8::splat(simd, p[axis].abs() * f32::EPSILON);
-    let at = f32x8::splat(simd, p[axis]);
-    let below = f32x8::simd_from(simd, node.planes[2 * axis]) - at;
-    let above = at - f32x8::simd_from(simd, node.planes[2 * axis + 1]);
-    (below.max(above) - slack).max(f32x8::splat(simd, 0.0))
+    let slack = f32x8::splat(simd, p.abs() * f32::EPSILON);
+    let at = f32x8::splat(simd, p);
+    ((least - at).max(at - greatest) - slack).max(f32x8::splat(simd, 0.0))
+}
+
+/// The least distance to the triangles of a packet, at least where it may be below the root of `limit`: the boxes of
+/// the triangles are asked first.
+#[inline(always)]
+fn to_packet<S: Simd>(simd: S, packet: &Packet, p: DVec3, limit: f32) -> f64 {
+    let point = p.as_vec3();
+    let x = beside_triangles(simd, packet, 0, point.x);
+    let y = beside_triangles(simd, packet, 1, point.y);
+    let z = beside_triangles(simd, packet, 2, point.z);
+    let mut mask = sum_of_squares(simd, x, y, z).simd_lt(f32x8::splat(simd, limit)).to_bitmask() as u32;
+    let mut nearest = f64::INFINITY;
+    while mask != 0 {
+        let [a, b, c] = packet.triangle((mask.trailing_zeros() & 7) as usize);
+        mask &= mask - 1;
+        let triangle = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
+        let slack = SLACK * (p - triangle[0]).abs().max_element();
+        nearest = nearest.min(to_triangle_squared(triangle, p).sqrt() - slack);
+    }
+    nearest
+}
+
+#[inline(always)]
+fn beside_triangles<S: Simd>(simd: S, packet: &Packet, axis: usize, p: f32) -> f32x8<S> {
+    let a = f32x8::simd_from(simd, packet.vertex[0][axis]);
+    let b = f32x8::simd_from(simd, packet.vertex[1][axis]);
+    let c = f32x8::simd_from(simd, packet.vertex[2][axis]);
+    beside(simd, a.min(b).min(c), a.max(b).max(c), p)
 }
 
 /// Squared distance to a triangle (after Ericson 2005, § 5.1.5), exact enough in double precision for triangles as

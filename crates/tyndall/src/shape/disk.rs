@@ -59,8 +59,11 @@ impl Disk {
         if !(self.centre.is_finite() && self.a.is_finite() && self.b.is_finite() && self.inner.is_finite()) {
             return Err(ShapeError::NotFinite);
         }
+        if !(0.0..1.0).contains(&self.inner) {
+            return Err(ShapeError::NotPositive { what: "width of the ring", value: 1.0 - self.inner });
+        }
         if self.outward() == DVec3::ZERO {
-            return Err(ShapeError::NotPositive { what: "radius", value: 0.0 });
+            return Err(ShapeError::NotPositive { what: "radius of the disk", value: 0.0 });
         }
         Ok(())
     }

@@ -87,14 +87,22 @@ pub struct Geometry {
     /// The instruction set, asked for once.
     pub(super) level: Level,
     pub(super) shapes: Vec<Shape>,
+    /// By object: whether it is seen through instances only.
+    pub(super) grouped: Vec<bool>,
     pub(super) world: Tree,
     pub(super) groups: Vec<Tree>,
     pub(super) instances: Vec<Instance>,
 }
 
 impl Geometry {
-    pub(super) fn new(shapes: Vec<Shape>, world: Tree, groups: Vec<Tree>, instances: Vec<Instance>) -> Self {
-        Self { level: Level::new(), shapes, world, groups, instances }
+    pub(super) fn new(
+        shapes: Vec<Shape>,
+        grouped: Vec<bool>,
+        world: Tree,
+        groups: Vec<Tree>,
+        instances: Vec<Instance>,
+    ) -> Self {
+        Self { level: Level::new(), shapes, grouped, world, groups, instances }
     }
 
     /// The nearest surface with `0 < t < t_max`.
@@ -188,6 +196,11 @@ impl Geometry {
         self.world.bounds
     }
 
+    /// Whether an object is part of a group, and is seen through instances only.
+    pub fn is_in_group(&self, object: ObjectId) -> bool {
+        self.grouped[object.0 as usize]
+    }
+
     /// A box around one object, in world space unless it is part of a group.
     pub fn object_bounds(&self, object: ObjectId) -> Bounds {
         self.shape(object).bounds()
@@ -204,5 +217,47 @@ impl Geometry {
             Shape::Mesh(mesh) if (prim as usize) < mesh.indices.len() => Some(mesh.triangle(prim)),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Transform;
+    use crate::shape::GeometryBuilder;
+
+    /// No fused operations and no approximate ones: SSE2, SSE4.2, AVX2 and AVX-512 agree bit by bit, whichever of
+    /// them the machine has.
+    #[test]
+    fn every_instruction_set_gives_the_same_hits() {
+        let mut mesh = Mesh::default();
+        let wave = |i: u32| (i as f32 * 12.9898).sin() * 43.5453 % 1.0;
+        for i in 0..3000 {
+            let at = Vec3::new(wave(9 * i / 3), wave(9 * (i / 3) + 1), wave(9 * (i / 3) + 2));
+            mesh.positions.push(at + 0.2 * Vec3::new(wave(9 * i + 3), wave(9 * i + 4), wave(9 * i + 5)));
+        }
+        mesh.indices = (0..1000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mut builder = GeometryBuilder::new();
+        builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
+        let best = builder.build().unwrap();
+        let lesser = [
+            Level::baseline(),
+            Level::new().as_sse4_2().map_or(Level::baseline(), Simd::level),
+            Level::new().as_avx2().map_or(Level::baseline(), Simd::level),
+        ];
+        let mut hits = 0;
+        for level in lesser {
+            let geometry = Geometry { level, ..best.clone() };
+            for i in 0..10_000 {
+                let origin = Vec3::new(wave(7 * i), wave(7 * i + 1), wave(7 * i + 2));
+                let dir = Vec3::new(wave(7 * i + 3), wave(7 * i + 4), wave(7 * i + 5)).normalize();
+                let ray = Ray::new(origin, dir);
+                let (a, b) = (best.intersect(&ray, 1.5), geometry.intersect(&ray, 1.5));
+                assert_eq!(a, b);
+                assert_eq!(best.clearance(origin, 1.0).to_bits(), geometry.clearance(origin, 1.0).to_bits());
+                hits += u32::from(a.is_some());
+            }
+        }
+        assert!(hits > 10_000, "{hits}");
     }
 }

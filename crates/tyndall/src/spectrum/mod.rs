@@ -15,6 +15,9 @@
 //! - A spectrum that is not emitted (reflectance, coefficient) has the colour that D65 gives it: flat is grey.
 //! - Colours outside of the sRGB gamut (a filament, a laser) lose their negative components where the `rgb` colour is
 //!   resolved and keep their luminance; `spectral` mode does not need this.
+//! - `mono` is the Rec. 709 luminance of the `rgb` colour for lights, reflectances and coefficients alike. It is exact for
+//!   grey scenes; in others the luminance of a product is not the product of luminances.
+//! - Components and values given must be finite: whoever reads a file says where they are not.
 //! - One spectral sample may have **negative** sRGB components on the film; only the mean is a colour.
 
 pub mod blackbody;

@@ -126,10 +126,26 @@ impl World {
             )
         };
         let indices = vec![
-            [0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
-            [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5],
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
         ];
-        let mesh = Mesh { positions: (0..8).map(corner).collect(), indices, normals: Vec::new(), uvs: Vec::new(), reversed: false };
+        let mesh = Mesh {
+            positions: (0..8).map(corner).collect(),
+            indices,
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            reversed: false,
+        };
         self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap()
     }
 
@@ -159,17 +175,13 @@ impl World {
     fn shine(&mut self, shape: EmitterShape, le: f32) {
         let id = LightId(self.lights.len() as u32);
         self.objects.last_mut().unwrap().emission = Emission::Whole(id);
-        self.lights.push(Light::Area(AreaLight {
-            shape,
-            radiance: grey(le),
-            luminance: le,
-            two_sided: false,
-        }));
+        self.lights.push(Light::Area(AreaLight { shape, radiance: grey(le), luminance: le, two_sided: false }));
     }
 
     /// The same radiance from everywhere.
     pub fn sky(&mut self, le: f32) {
-        self.lights.push(Light::Constant(ConstantEnvironment { radiance: Spectrum::illuminant_rgb([le; 3]), luminance: le }));
+        self.lights
+            .push(Light::Constant(ConstantEnvironment { radiance: Spectrum::illuminant_rgb([le; 3]), luminance: le }));
     }
 
     /// Radiance `above` from all directions with y > 0 and `below` from the others.
@@ -205,9 +217,8 @@ pub fn measure(scene: &Scene, integrator: &dyn Integrator, spp: u32) -> Measured
     let pixel = rendering.film.pixel(0, 0).unwrap();
     let n = pixel.count as f64;
     let mean = pixel.sum.map(|s| s / n);
-    let standard_error = std::array::from_fn(|c| {
-        ((pixel.sum_of_squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0)).sqrt()
-    });
+    let standard_error =
+        std::array::from_fn(|c| ((pixel.sum_of_squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0)).sqrt());
     Measured { mean, standard_error }
 }
 
@@ -220,12 +231,15 @@ pub fn assert_mean(what: &str, m: &Measured, expected: [f64; 3], precision: f64)
         assert!(
             z.abs() < 4.5,
             "{what}, channel {c}: mean {:.6} ± {:.6}, expected {:.6} (z = {z:.1})",
-            m.mean[c], m.standard_error[c], expected[c]
+            m.mean[c],
+            m.standard_error[c],
+            expected[c]
         );
         assert!(
             m.standard_error[c] <= precision * expected[c].abs(),
             "{what}, channel {c}: standard error {:.2e} is above {precision} of {:.6}",
-            m.standard_error[c], expected[c]
+            m.standard_error[c],
+            expected[c]
         );
     }
 }

@@ -112,3 +112,23 @@ fn deep_nesting_is_refused_and_not_recursed_into() {
     survive(&"[".repeat(200_000));
     survive(&format!("WorldBegin Shape \"sphere\" {}", "\"float radius\" [".repeat(20_000)));
 }
+
+/// Work that grows with the square of the text would take hours at a few megabytes: each of these takes seconds at most.
+#[test]
+fn large_hostile_texts_end_soon() {
+    let many = |count: usize, item: &dyn Fn(usize) -> String| (0..count).map(item).collect::<String>();
+    survive(&format!("WorldBegin Shape \"sphere\" {}", many(30_000, &|i| format!("\"float p{i}\" 1 "))));
+    survive(&format!(
+        "WorldBegin {} Shape \"sphere\"",
+        many(30_000, &|i| format!("Attribute \"shape\" \"float p{i}\" 1 "))
+    ));
+    survive(&format!(
+        "WorldBegin {}",
+        many(20_000, &|i| format!("MakeNamedMaterial \"m{i}\" \"string type\" \"interface\" NamedMaterial \"n{i}\" "))
+    ));
+    survive(&format!(
+        "WorldBegin {} {}",
+        many(20_000, &|i| format!("CoordinateSystem \"c{i}\" ")),
+        many(20_000, &|i| format!("CoordSysTransform \"d{i}\" "))
+    ));
+}

@@ -36,7 +36,6 @@ pub(in crate::shape) fn build(entries: &[Entry]) -> Tree {
     let mut tree = Tree {
         nodes: Vec::new(),
         packets: Vec::new(),
-        ids: Vec::new(),
         others: Vec::new(),
         root: None,
         bounds: entries.iter().fold(Bounds::EMPTY, |b, e| b.union(e.bounds())),
@@ -60,7 +59,7 @@ fn build_pairs(entries: &[Entry]) -> Bvh2 {
         .collect();
     let indices = (0..entries.len() as u32).collect();
     let mut pairs = PlocBuilder::new().build(PlocSearchDistance::Medium, &boxes, indices, SortPrecision::U64, 0);
-    ReinsertionOptimizer::default().run(&mut pairs, 0.1, None);
+    ReinsertionOptimizer::default().run(&mut pairs, 0.5, None);
     pairs
 }
 
@@ -236,8 +235,7 @@ fn emit_leaf(tree: &mut Tree, pairs: &Bvh2, index: usize, entries: &[Entry]) -> 
     for chunk in triangles.chunks(8) {
         let lane = |i: usize| chunk[i.min(chunk.len() - 1)];
         let vertex = std::array::from_fn(|v| std::array::from_fn(|axis| std::array::from_fn(|i| lane(i).1[v][axis])));
-        tree.packets.push(Packet { vertex });
-        tree.ids.push(std::array::from_fn(|i| lane(i).0));
+        tree.packets.push(Packet { vertex, ids: std::array::from_fn(|i| lane(i).0) });
     }
     child
 }

@@ -16,6 +16,7 @@
 //! the rest because the plane's distance from the origin is that of the padded box.
 
 pub(super) mod build;
+mod prefetch;
 pub(super) mod traverse;
 pub(super) mod triangle;
 
@@ -26,7 +27,7 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Eight boxes and what is inside them.
 #[derive(Debug, Clone, Copy)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(super) struct Node {
     /// `planes[2·axis + side]`: the least (side 0) and greatest (side 1) coordinates of the eight boxes [length].
     pub(super) planes: [[f32; 8]; 6],
@@ -103,18 +104,26 @@ impl Child {
 
 /// Eight triangles, vertex by vertex and axis by axis. A packet that is not full repeats its last triangle.
 #[derive(Debug, Clone, Copy)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(super) struct Packet {
     /// `vertex[i][axis][lane]` [length].
     pub(super) vertex: [[[f32; 8]; 3]; 3],
+    pub(super) ids: [TriangleId; 8],
 }
 
 impl Packet {
     /// One triangle of the packet [length].
     #[inline(always)]
     pub(super) fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.vertex.map(|v| Vec3::new(v[0][lane], v[1][lane], v[2][lane]))
+        // Written out: `map` copies the packet.
+        let [a, b, c] = &self.vertex;
+        [vertex(a, lane), vertex(b, lane), vertex(c, lane)]
     }
+}
+
+#[inline(always)]
+fn vertex(v: &[[f32; 8]; 3], lane: usize) -> Vec3 {
+    Vec3::new(v[0][lane], v[1][lane], v[2][lane])
 }
 
 /// The name of a triangle.
@@ -140,7 +149,6 @@ pub(super) enum Primitive {
 pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) packets: Vec<Packet>,
-    pub(super) ids: Vec<[TriangleId; 8]>,
     pub(super) others: Vec<Primitive>,
     /// `None` when there is nothing.
     pub(super) root: Option<Child>,

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 
-use super::{Child, Content, NONE, Node, Primitive, Tree, triangle::Shear};
+use super::{Child, Content, NONE, Node, Primitive, Tree, prefetch::prefetch, triangle::Shear};
 use crate::math::{Ray, Vec2, Vec3};
 
 /// Relative error allowed for the distances to a box's planes: see the head of [`super`].
@@ -76,14 +76,19 @@ impl Slabs {
 
 /// Boxes still to be opened, each as its distance (upper half) and its content (lower half). Distances are not
 /// negative, so these numbers sort like them.
-struct Stack {
-    top: [u64; 64],
+pub(in crate::shape) struct Stack {
+    top: [u64; 32],
     len: usize,
-    /// For trees deeper than any sensible scene makes them.
+    /// For the rest, which is rarely needed; the top is kept short because it is cleared for every ray.
     spill: Vec<u64>,
 }
 
 impl Stack {
+    #[inline(always)]
+    pub(in crate::shape) fn new() -> Self {
+        Self { top: [0; 32], len: 0, spill: Vec::new() }
+    }
+
     #[inline(always)]
     fn push(&mut self, key: u64) {
         if self.len < self.top.len() {
@@ -96,14 +101,14 @@ impl Stack {
 
     /// The next box that begins before `t_max`.
     #[inline(always)]
-    fn pop(&mut self, t_max: f32) -> Option<Child> {
+    pub(in crate::shape) fn pop(&mut self, t_max: f32) -> Option<Child> {
         loop {
             let key = match self.spill.pop() {
                 Some(key) => key,
                 None if self.len == 0 => return None,
                 None => {
                     self.len -= 1;
-                    self.top[self.len & 63]
+                    self.top[self.len & 31]
                 }
             };
             if f32::from_bits((key >> 32) as u32) < t_max {
@@ -124,19 +129,21 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
 ) {
     let Some(mut child) = tree.root else { return };
     let slabs = Slabs::new(ray);
-    let shear = Shear::new(ray);
-    let mut stack = Stack { top: [0; 64], len: 0, spill: Vec::new() };
+    let mut stack = Stack::new();
     loop {
         match child.content() {
             Content::Node(index) => {
                 let node = &tree.nodes[index];
                 let (mask, enter) = slabs.meet(simd, node, nearest.t);
+                prefetch_children(tree, node, mask);
                 if let Some(first) = open(node, mask, &enter, &mut stack) {
                     child = first;
                     continue;
                 }
             }
             Content::Packets { first, count } => {
+                // Made here and not before: short flights meet no triangle, long ones one or two leaves.
+                let shear = Shear::new(ray);
                 for packet in first..first + count {
                     test_packet(simd, tree, packet, &shear, nearest);
                 }
@@ -157,9 +164,22 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
     }
 }
 
+/// All boxes that were met will soon be opened, or most.
+#[inline(always)]
+fn prefetch_children(tree: &Tree, node: &Node, mut mask: u32) {
+    while mask != 0 {
+        match node.child[(mask.trailing_zeros() & 7) as usize].content() {
+            Content::Node(index) => prefetch(&tree.nodes[index]),
+            Content::Packets { first, .. } => prefetch(&tree.packets[first].vertex),
+            Content::Others { first, .. } => prefetch(&tree.others[first]),
+        }
+        mask &= mask - 1;
+    }
+}
+
 /// The nearest box that was met; the others go onto the stack, farthest first.
 #[inline(always)]
-fn open(node: &Node, mask: u32, enter: &[f32; 8], stack: &mut Stack) -> Option<Child> {
+pub(in crate::shape) fn open(node: &Node, mask: u32, enter: &[f32; 8], stack: &mut Stack) -> Option<Child> {
     if mask == 0 {
         return None;
     }
@@ -208,7 +228,7 @@ fn test_packet<S: Simd>(simd: S, tree: &Tree, packet: usize, shear: &Shear, near
         let Some(hit) = shear.resolve(&triangles.triangle(lane)) else { continue };
         let t = hit.t as f32;
         if hit.t > 0.0 && t < nearest.t {
-            let id = tree.ids[packet][lane];
+            let id = triangles.ids[lane];
             *nearest = Nearest { t, object: id.object, prim: id.prim, instance: NONE, uv: hit.uv };
         }
     }
