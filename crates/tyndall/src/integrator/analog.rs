@@ -4,7 +4,7 @@
 //! Lights that a path can run into are found only by running into them. Dirac lights, which no path can run into, are
 //! gathered at each vertex.
 
-use super::Integrator;
+use super::{Integrator, in_one_lane};
 use crate::{
     light::Light,
     material::Material,
@@ -13,7 +13,7 @@ use crate::{
     path::{Vertex, shadow},
     sampling::Sampler,
     scene::Scene,
-    spectrum::{ColorMode, Lanes, Wavelengths},
+    spectrum::{Lanes, Wavelengths},
     tally::Tally,
 };
 
@@ -31,16 +31,7 @@ impl Integrator for Analog {
         sampler: &mut Sampler,
         tally: &mut Tally,
     ) -> Lanes {
-        // One lane a path stands for all of them. (The fourth lane of `rgb` is never looked at by the film.)
-        let lanes = match scene.color {
-            ColorMode::Rgb => 3,
-            ColorMode::Mono => return Lanes::splat(walk(scene, ray, &wavelengths, 0, sampler, tally)),
-            ColorMode::Spectral => 4,
-        };
-        let lane = ((u_hero * lanes as f32) as usize).min(lanes - 1);
-        let mut radiance = [0.0; 4];
-        radiance[lane] = lanes as f32 * walk(scene, ray, &wavelengths, lane, sampler, tally);
-        Lanes::new(radiance)
+        in_one_lane(scene.color, u_hero, |lane| walk(scene, ray, &wavelengths, lane, sampler, tally))
     }
 }
 
