@@ -179,7 +179,7 @@ fn only_the_versions_1_see_a_point_light() {
 /// Beer and Lambert: an absorber of thickness d before a uniform sky passes exp(−σ_a d), channel by channel.
 ///
 /// This is where version 1.0 as printed fails: its directScatteredEst lacks σ_s/σ_t, so a collision that only absorbs
-/// would glow with the light that it samples.
+/// glows with the light that it samples. Printed so, it gave 0.958 ± 0.006 here instead of exp(−0.2) = 0.819.
 #[test]
 fn an_absorber_darkens_the_sky_exponentially() {
     for estimator in VOLUME {
