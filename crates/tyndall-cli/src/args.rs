@@ -158,7 +158,7 @@ pub(crate) struct LectureOptions {
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) spp: u32,
     /// Samples a pixel of the reference, by volpath
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) reference_spp: u32,
     /// Size of the images [default: that of the scenes]
     #[arg(long, value_name = "WxH", value_parser = values::resolution)]

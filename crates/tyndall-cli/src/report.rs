@@ -52,6 +52,8 @@ pub(crate) struct Statistics {
     pub(crate) truncated_paths: u64,
     /// Throughput that they still carried, a path: the energy lost where everything around shines with radiance 1.
     pub(crate) energy_lost_to_limit: f64,
+    /// Paths that left a medium without meeting its boundary, by rounding, and ended there.
+    pub(crate) leaks: u64,
     /// Samples that were not a radiance (NaN, infinite or negative) and count as zero.
     pub(crate) non_finite_samples: u64,
     /// The first of them.
@@ -132,6 +134,7 @@ impl Statistics {
             ns_per_collision: (tally.collisions > 0).then(|| 1e9 * course.cpu_seconds / tally.collisions as f64),
             truncated_paths: tally.truncated_paths,
             energy_lost_to_limit: tally.truncated_throughput / tally.paths.max(1) as f64,
+            leaks: tally.leaks,
             non_finite_samples: tally.bad_samples,
             non_finite_list: tally.bad_sample_list.iter().map(BadSample::from).collect(),
         }
@@ -142,11 +145,12 @@ impl Statistics {
         let mut lines = vec![
             format!("{} in {}", self.outputs.join(" and "), time(self.wall_seconds)),
             format!(
-                "  {} spp, {}; pixel error {:.2} % of the mean; {} threads, {:.2} CPU seconds",
+                "  {} spp, {}; {}; {} thread{}, {:.2} CPU seconds",
                 Short(self.spp),
                 self.how_it_ended(),
-                100.0 * self.relative_error,
+                self.error_in_words(),
                 self.threads,
+                if self.threads == 1 { "" } else { "s" },
                 self.cpu_seconds,
             ),
             format!(
@@ -164,6 +168,9 @@ impl Statistics {
                 self.energy_lost_to_limit,
             ));
         }
+        if self.leaks > 0 {
+            lines.push(format!("  warning: {} paths left a medium without meeting its boundary", count(self.leaks)));
+        }
         if let Some(first) = self.non_finite_list.first() {
             lines.push(format!(
                 "  warning: {} samples were not a radiance and count as zero; the first: pixel {},{} sample {} = [{}]",
@@ -175,6 +182,14 @@ impl Statistics {
             ));
         }
         lines.join("\n")
+    }
+
+    fn error_in_words(&self) -> String {
+        if self.relative_error.is_finite() {
+            format!("pixel error {:.2} % of the mean", 100.0 * self.relative_error)
+        } else {
+            "the pixel error shows from two samples on".into()
+        }
     }
 
     fn how_it_ended(&self) -> &'static str {

@@ -10,6 +10,10 @@
 //! for three channels. Channels of one tile are correlated, which makes Šidák's correction err on the safe side. The
 //! verdict takes the smaller of the two, corrected for being the smaller of two.
 //!
+//! Standard errors are estimates. Where an estimator finds light rarely, a tile that found too little of it also
+//! underestimates its variance, so the variance is taken as if the brighter of the two means were the truth (a score test
+//! instead of a Wald test): tests of noisy images lose a little power and no longer cry wolf.
+//!
 //! What arithmetic can do is not counted as a difference: rounding of the stored values (independent in each pixel), and
 //! a relative 10⁻⁶ of a tile's mean for sums of 32-bit floats along a path.
 
@@ -116,12 +120,13 @@ pub(crate) fn z_test(a: &Image, b: &Image, edge: u32) -> Option<Test> {
     if a.standard_error.is_none() && b.standard_error.is_none() {
         return None;
     }
+    let (sampled_a, sampled_b) = (Sampled::new(a), Sampled::new(b));
     let (mut tests, mut max_z, mut max_at) = (0, 0.0f64, (0, 0));
     let mut chi_square = [0.0; 3];
     let mut degrees = [0usize; 3];
     for tile in tiles(a, edge) {
         for c in 0..3 {
-            let Some(z) = tile_z(a, b, &tile.pixels, c) else { continue };
+            let Some(z) = tile_z(&sampled_a, &sampled_b, &tile.pixels, c) else { continue };
             tests += 1;
             degrees[c] += 1;
             chi_square[c] += z * z;
@@ -168,27 +173,71 @@ fn tiles(image: &Image, edge: u32) -> impl Iterator<Item = Tile> {
 
 /// z of a tile in one channel. `None` where both images are equal without noise (nothing to test), and where a standard
 /// error is infinite (a pixel with fewer than two samples tells nothing).
-fn tile_z(a: &Image, b: &Image, pixels: &[usize], c: usize) -> Option<f64> {
-    let n = pixels.len() as f64;
-    let mean = |image: &Image| pixels.iter().map(|&i| f64::from(image.mean[i][c])).sum::<f64>() / n;
-    let square = |pixels_of: &[[f32; 3]]| pixels.iter().map(|&i| f64::from(pixels_of[i][c]).powi(2)).sum::<f64>();
-    let variance = |image: &Image| {
-        let noise = image.standard_error.as_deref().map_or(0.0, square);
-        let rounding = square(&image.mean) * f64::from(image.rounding).powi(2);
-        (noise + rounding) / (n * n)
-    };
-    let (x, y) = (mean(a), mean(b));
-    if x == y && [a, b].iter().all(|i| i.standard_error.as_deref().is_none_or(|se| square(se) == 0.0)) {
+fn tile_z(a: &Sampled, b: &Sampled, pixels: &[usize], c: usize) -> Option<f64> {
+    let (of_a, of_b) = (a.tile(pixels, c), b.tile(pixels, c));
+    if of_a.mean == of_b.mean && of_a.noise == 0.0 && of_b.noise == 0.0 {
         return None;
     }
-    let arithmetic = (ARITHMETIC * 0.5 * (x.abs() + y.abs())).powi(2);
-    let deviation = (variance(a) + variance(b) + arithmetic).sqrt();
+    let brighter = of_a.mean.max(of_b.mean);
+    let n = pixels.len() as f64;
+    let noise = a.noise_if_mean_were(brighter, &of_a, n, c) + b.noise_if_mean_were(brighter, &of_b, n, c);
+    let arithmetic = (ARITHMETIC * 0.5 * (of_a.mean.abs() + of_b.mean.abs())).powi(2);
+    let deviation = (noise + of_a.rounding + of_b.rounding + arithmetic).sqrt();
     if deviation.is_infinite() {
         return None;
     }
     // A tile that is not a number agrees with nothing.
-    let z = (x - y) / deviation;
+    let z = (of_a.mean - of_b.mean) / deviation;
     Some(if z.is_nan() { f64::INFINITY } else { z })
+}
+
+/// An image, and the variance of a pixel over its mean, each channel: for light that is found rarely, in portions (a
+/// compound Poisson process), that is the size of a portion.
+struct Sampled<'a> {
+    image: &'a Image,
+    portion: [f64; 3],
+}
+
+/// A tile in one channel: its mean, and the variances of its mean.
+struct TileMean {
+    mean: f64,
+    noise: f64,
+    rounding: f64,
+}
+
+impl<'a> Sampled<'a> {
+    fn new(image: &'a Image) -> Self {
+        let portion = |c: usize| {
+            let variances = image.standard_error.iter().flatten().map(|se| f64::from(se[c]).powi(2)).sum::<f64>();
+            let light = image.mean.iter().map(|m| f64::from(m[c])).sum::<f64>();
+            if variances > 0.0 && variances.is_finite() && light > 0.0 { variances / light } else { 0.0 }
+        };
+        Self { image, portion: std::array::from_fn(portion) }
+    }
+
+    fn tile(&self, pixels: &[usize], c: usize) -> TileMean {
+        let n = pixels.len() as f64;
+        let squares = |of: &[[f32; 3]]| pixels.iter().map(|&i| f64::from(of[i][c]).powi(2)).sum::<f64>();
+        TileMean {
+            mean: pixels.iter().map(|&i| f64::from(self.image.mean[i][c])).sum::<f64>() / n,
+            noise: self.image.standard_error.as_deref().map_or(0.0, squares) / (n * n),
+            rounding: squares(&self.image.mean) * f64::from(self.image.rounding).powi(2) / (n * n),
+        }
+    }
+
+    /// The variance that the tile's mean of `n` pixels would have, were `mean` the truth. Where rare light was found too
+    /// rarely, its variance was underestimated with it (to zero, where none was found at all): variance is proportional
+    /// to the mean, with the portion of the tile, or of the whole image where the tile is black.
+    fn noise_if_mean_were(&self, mean: f64, tile: &TileMean, n: f64, c: usize) -> f64 {
+        let proportional = if tile.mean > 0.0 {
+            tile.noise * mean / tile.mean
+        } else if tile.mean == 0.0 {
+            self.portion[c] * mean / n
+        } else {
+            0.0
+        };
+        tile.noise.max(proportional)
+    }
 }
 
 fn pixel_at(image: &Image, index: usize) -> (u32, u32) {
@@ -313,6 +362,31 @@ mod tests {
         };
         assert!(z_test(&quiet(1.01, 1), &quiet(1.0, 2), 8).unwrap().p < 1e-9);
         assert!(z_test(&quiet(1.0, 1), &quiet(1.0, 2), 8).unwrap().p > 1e-3);
+    }
+
+    /// One sample in 4096 is 4096, the others are 0: a tile of 64 pixels and 64 samples finds a Poisson number of mean 1,
+    /// and in every third tile nothing, with a standard error of nothing. Its partner knows the mean well.
+    #[test]
+    fn light_that_was_found_too_rarely_is_no_difference() {
+        let rare = |seed: u64| {
+            let mut film = Film::new(64, 48, Crop::full(64, 48));
+            for (i, pixel) in film.pixels.iter_mut().enumerate() {
+                let mut rng = Rng::for_sample((i as u32, 0), 0, seed);
+                for _ in 0..64 {
+                    pixel.add([if rng.next_1d() < 1.0 / 4096.0 { 4096.0 } else { 0.0 }; 3]);
+                }
+            }
+            Image::of(&film, Metadata::default())
+        };
+        for seed in 0..20 {
+            let test = z_test(&render(1.0, seed), &rare(seed), 8).unwrap();
+            assert!(test.p > 0.01, "{test:?}");
+        }
+        // But not finding it anywhere is one.
+        let mut never = rare(0);
+        never.mean.fill([0.0; 3]);
+        never.standard_error.as_mut().unwrap().fill([0.0; 3]);
+        assert!(z_test(&render(1.0, 1), &never, 8).unwrap().p < 1e-6);
     }
 
     #[test]

@@ -4,12 +4,14 @@
 //! [`scene::Scene`], this crate turns a scene into an image with its standard error ([`render::render`]).
 //!
 //! The floors, from the ground up: [`math`] and [`sampling`], [`spectrum`], the models ([`phase`], [`medium`],
-//! [`bsdf`], [`light`], [`shape`], [`camera`]), then [`path`] and [`integrator`].
+//! [`bsdf`], [`light`], [`shape`], [`camera`]), then [`path`] and [`integrator`]; and beside
+//! them the [`lecture`] that it all comes from.
 
 pub mod bsdf;
 pub mod camera;
 pub mod film;
 pub mod integrator;
+pub mod lecture;
 pub mod light;
 pub mod material;
 pub mod math;

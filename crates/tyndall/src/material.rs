@@ -66,9 +66,6 @@ pub enum Index {
     Glass(Glass),
 }
 
-/// The sodium D line [nm], for which a single index is meant.
-const SODIUM_D: f32 = 589.3;
-
 impl Material {
     /// The BSDF in the lanes of a path, whose lane `hero` decides where wavelengths part.
     #[inline]
@@ -100,11 +97,11 @@ impl Material {
 }
 
 impl Index {
+    #[inline]
     fn at(&self, wavelengths: &Wavelengths, hero: usize) -> f32 {
-        match (self, wavelengths) {
-            (Self::Constant(eta), _) => *eta,
-            (Self::Glass(glass), Wavelengths::Spectral { lambda, .. }) => glass.eta(lambda[hero]),
-            (Self::Glass(glass), _) => glass.eta(SODIUM_D),
+        match self {
+            Self::Constant(eta) => *eta,
+            Self::Glass(glass) => glass.eta(wavelengths.hero(hero)),
         }
     }
 }

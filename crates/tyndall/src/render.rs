@@ -3,6 +3,8 @@
 //! The image depends on the scene and the settings alone. Every sample owns its random numbers (pixel, index, seed) and
 //! every pixel adds its samples in the order of their index, so threads, tiles, passes and crops cannot be seen in it.
 
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
 use rayon::prelude::*;
 
 use crate::{
@@ -10,7 +12,7 @@ use crate::{
     integrator::Integrator,
     sampling::{Sampler, SamplerKind},
     scene::Scene,
-    spectrum::{Wavelengths, film_rgb},
+    spectrum::{Lanes, Wavelengths, film_rgb},
     tally::Tally,
 };
 
@@ -88,9 +90,8 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
         Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)));
     let mut tiles = tiles_of(film.crop);
     let total = film.pixels.len() as u64 * u64::from(settings.spp);
-    let samples = std::sync::atomic::AtomicU64::new(0);
-    let stopped = std::sync::atomic::AtomicBool::new(false);
-    use std::sync::atomic::Ordering::Relaxed;
+    let samples = AtomicU64::new(0);
+    let stopped = AtomicBool::new(false);
 
     for pass in passes(settings.spp) {
         tiles.par_iter_mut().with_max_len(1).for_each(|tile| {
@@ -168,24 +169,19 @@ fn render_tile(
     for (i, pixel) in tile.pixels.iter_mut().enumerate() {
         let (x, y) = (tile.area.min.0 + i as u32 % columns, tile.area.min.1 + i as u32 / columns);
         for index in samples.clone() {
-            let value = sample_pixel(scene, integrator, settings, (x, y), index, &mut tile.tally);
-            if value.iter().all(|v| v.is_finite() && *v >= 0.0) || is_spectral_undershoot(scene, value) {
+            let (radiance, value) = sample_pixel(scene, integrator, settings, (x, y), index, &mut tile.tally);
+            if radiance.is_finite() && radiance.min_lane() >= 0.0 {
                 pixel.add(value);
             } else {
                 // Counted and located, and left out of the sums, which one such sample would spoil for good.
-                tile.tally.non_finite_sample((x, y), index, value);
+                tile.tally.bad_sample((x, y), index, value);
                 pixel.add([0.0; 3]);
             }
         }
     }
 }
 
-/// Saturated wavelengths lie outside the gamut of linear sRGB: finite negative values are honest there.
-fn is_spectral_undershoot(scene: &Scene, value: [f32; 3]) -> bool {
-    scene.color == crate::spectrum::ColorMode::Spectral && value.iter().all(|v| v.is_finite())
-}
-
-/// One sample of one pixel, linear sRGB.
+/// One sample of one pixel: radiance, and linear sRGB (which may be negative for a single wavelength).
 fn sample_pixel(
     scene: &Scene,
     integrator: &dyn Integrator,
@@ -193,12 +189,12 @@ fn sample_pixel(
     pixel: (u32, u32),
     index: u32,
     tally: &mut Tally,
-) -> [f32; 3] {
+) -> (Lanes, [f32; 3]) {
     let mut sampler = Sampler::new(settings.sampler, pixel, index, settings.seed);
     let ray = scene.camera.sample_ray(pixel, sampler.camera());
     let [u_wavelength, u_hero] = sampler.wavelength();
     let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
     tally.paths += 1;
     let radiance = integrator.li(scene, ray, wavelengths, u_hero, &mut sampler, tally);
-    film_rgb(radiance, &wavelengths).map(|v| v * scene.camera.exposure)
+    (radiance, film_rgb(radiance, &wavelengths).map(|v| v * scene.camera.exposure))
 }

@@ -4,9 +4,9 @@ use crate::{
     camera::Camera,
     light::{AreaLight, LightId, LightTable},
     material::Material,
-    math::{Bounds, Vec3},
+    math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Homogeneous, MediumId, MediumInterface},
-    shape::{Geometry, Interaction},
+    shape::{Geometry, Hit, Interaction},
     spectrum::ColorMode,
 };
 
@@ -66,6 +66,8 @@ struct Facts {
     has_null_surfaces: bool,
     /// By medium: whether a straight line from inside it can reach a light.
     lit: Vec<bool>,
+    /// By medium: a box that it does not reach out of.
+    extent: Vec<Bounds>,
 }
 
 impl Scene {
@@ -86,6 +88,7 @@ impl Scene {
             lit: (0..media.len())
                 .map(|i| can_be_lit(MediumId(i as u32), &geometry, &objects, &materials, &lights))
                 .collect(),
+            extent: (0..media.len()).map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects)).collect(),
         };
         Self { color, camera, geometry, objects, materials, media, lights, facts }
     }
@@ -114,6 +117,23 @@ impl Scene {
             crate::light::Light::Area(light) => Some((id, light)),
             _ => None,
         }
+    }
+
+    /// The first surface within a free flight of length `flight` [length].
+    ///
+    /// The end of a flight is rounded, and must not be rounded across a surface: a collision on the wrong side would
+    /// leave a body without meeting its boundary. A surface as near to the end as rounding can be is therefore reached.
+    #[inline]
+    pub fn first_surface(&self, ray: &Ray, flight: f32) -> Option<Hit> {
+        let margin = gamma(8) * (ray.origin.abs().max_element() + flight);
+        self.geometry.intersect(ray, if flight.is_finite() { flight + margin } else { flight })
+    }
+
+    /// Whether `p` can be in a medium at all, which has ends. (At grazing incidence a rounded collision may still lie
+    /// outside: such a path has leaked, and is told by this once it is far enough.)
+    #[inline]
+    pub fn may_contain(&self, medium: MediumId, p: Vec3) -> bool {
+        self.facts.extent[medium.0 as usize].contains(p)
     }
 
     /// A lower bound on the distance from `p` to the nearest surface, at most `cap` [length].
@@ -150,7 +170,8 @@ fn can_be_lit(
     for (index, object) in objects.iter().enumerate() {
         // On the outside of a body the medium reaches as far as its other boundaries, which may be nowhere.
         let surrounds = object.interface.is_some_and(|i| i.outside == Some(medium));
-        if touches(object) && (is_null(object) || surrounds) {
+        let placed = geometry.is_in_group(crate::shape::ObjectId(index as u32));
+        if touches(object) && (is_null(object) || surrounds || placed) {
             return true;
         }
         if touches(object) {
@@ -158,6 +179,22 @@ fn can_be_lit(
         }
     }
     body.is_empty() || lights.lights.iter().filter_map(crate::light::Light::bounds).any(|b| overlap(&body, &b))
+}
+
+/// All of space, unless every surface that knows the medium has it inside, and stands in the world itself.
+fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Object]) -> Bounds {
+    let mut extent = Bounds::EMPTY;
+    for (index, object) in objects.iter().enumerate() {
+        let Some(interface) = object.interface else { continue };
+        let id = crate::shape::ObjectId(index as u32);
+        if interface.outside == Some(medium) || (interface.inside == Some(medium) && geometry.is_in_group(id)) {
+            return Bounds::EVERYTHING;
+        }
+        if interface.inside == Some(medium) {
+            extent = extent.union(geometry.object_bounds(id));
+        }
+    }
+    if camera.medium == Some(medium) { Bounds::EVERYTHING } else { extent }
 }
 
 fn overlap(a: &Bounds, b: &Bounds) -> bool {

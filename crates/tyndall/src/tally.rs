@@ -28,6 +28,8 @@ pub struct Tally {
     pub truncated_paths: u64,
     /// Σ of the throughput that those paths still carried: with unit radiance all around, the energy lost.
     pub truncated_throughput: f64,
+    /// Paths that left a medium without meeting its boundary, by rounding; they end.
+    pub leaks: u64,
     /// Number of samples that were not finite or negative.
     pub bad_samples: u64,
     /// The first few of them.
@@ -39,7 +41,7 @@ impl Tally {
     pub const KEPT: usize = 32;
 
     /// Notes a sample that is not a radiance.
-    pub fn non_finite_sample(&mut self, pixel: (u32, u32), index: u32, value: [f32; 3]) {
+    pub fn bad_sample(&mut self, pixel: (u32, u32), index: u32, value: [f32; 3]) {
         self.bad_samples += 1;
         if self.bad_sample_list.len() < Self::KEPT {
             self.bad_sample_list.push(BadSample { pixel, index, value });
@@ -56,6 +58,7 @@ impl Tally {
         self.surface_vertices += other.surface_vertices;
         self.truncated_paths += other.truncated_paths;
         self.truncated_throughput += other.truncated_throughput;
+        self.leaks += other.leaks;
         self.bad_samples += other.bad_samples;
         let room = Self::KEPT.saturating_sub(self.bad_sample_list.len());
         self.bad_sample_list.extend(other.bad_sample_list.iter().take(room));

@@ -28,7 +28,8 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     writeln!(out, "image      {}x{}, {} spp", scene.camera.width, scene.camera.height, desc.sampler.spp.value)?;
     writeln!(out, "objects    {} and {} instances", scene.objects.len(), desc.instances.len())?;
     let bounds = scene.geometry.bounds();
-    writeln!(out, "bounds     {} to {} [{unit}]", point(bounds.min), point(bounds.max))?;
+    let extent = (bounds.max - bounds.min).max_element();
+    writeln!(out, "bounds     {} to {} [{unit}]", point(bounds.min, extent), point(bounds.max, extent))?;
     writeln!(out, "materials  {}", scene.materials.len())?;
     lights(out, loaded)?;
     media(out, loaded, unit)?;
@@ -73,6 +74,9 @@ fn unit(desc: &SceneDesc) -> &'static str {
     LengthUnit::ALL.into_iter().find(|(_, unit)| *unit == wanted).map_or("unit", |(word, _)| word)
 }
 
-fn point(p: Vec3) -> String {
-    format!("({}, {}, {})", p.x, p.y, p.z)
+/// With four digits of the scene's extent: what is below is rounding.
+fn point(p: Vec3, extent: f32) -> String {
+    let digits = if extent > 0.0 { (4.0 - extent.log10().floor()).clamp(0.0, 20.0) as usize } else { 4 };
+    let number = |v: f32| format!("{:.digits$}", if v.abs() < 1e-5 * extent { 0.0 } else { v });
+    format!("({}, {}, {})", number(p.x), number(p.y), number(p.z))
 }

@@ -24,6 +24,9 @@ use crate::{
     watch::Watch,
 };
 
+/// A film needs 56 bytes a pixel: this one 15 GB.
+const MOST_PIXELS: u64 = 1 << 28;
+
 /// Loads, renders, saves, tells.
 pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     interrupt::listen()?;
@@ -142,6 +145,11 @@ fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings
     let seed = [desc.sampler.seed, desc.options.seed].into_iter().flatten().map(|seed| seed.value).next();
     let crop = options.crop.or(loaded.crop);
     let (width, height) = (loaded.scene.camera.width, loaded.scene.camera.height);
+    let pixels = crop.map_or(u64::from(width) * u64::from(height), |c| u64::from(c.width()) * u64::from(c.height()));
+    ensure!(
+        pixels <= MOST_PIXELS,
+        "{pixels} pixels are more than fit into memory: render the image in parts, by --crop"
+    );
     if let Some(crop) = crop {
         ensure!(
             crop.max.0 <= width && crop.max.1 <= height,

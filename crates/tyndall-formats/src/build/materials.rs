@@ -71,9 +71,12 @@ impl Builder<'_> {
 
     fn alpha(&mut self, roughness: &RoughnessDesc, span: Span) -> Option<[f32; 2]> {
         let alpha = roughness.alpha().map(|a| a as f32);
-        if roughness.distribution == MicrofacetKind::Beckmann && alpha.iter().any(|a| *a >= tyndall::bsdf::SMOOTHEST_ALPHA) {
+        if roughness.distribution == MicrofacetKind::Beckmann
+            && alpha.iter().any(|a| *a >= tyndall::bsdf::SMOOTHEST_ALPHA)
+        {
             return self.fail(
-                SceneError::at(span, "Beckmann microfacets are not known yet").help("write <string name=\"distribution\" value=\"ggx\"/>"),
+                SceneError::at(span, "Beckmann microfacets are not known yet")
+                    .help("write <string name=\"distribution\" value=\"ggx\"/>"),
             );
         }
         Some(alpha)

@@ -33,10 +33,9 @@ impl Builder<'_> {
     fn coefficients(&mut self, coefficients: &Coefficients) -> Option<(Spectrum, Spectrum)> {
         match coefficients {
             Coefficients::Preset(name) => self.preset(name),
-            Coefficients::AbsorptionScattering { sigma_a, sigma_s } => Some((
-                self.spectrum(sigma_a, Measure::Coefficient)?,
-                self.spectrum(sigma_s, Measure::Coefficient)?,
-            )),
+            Coefficients::AbsorptionScattering { sigma_a, sigma_s } => {
+                Some((self.spectrum(sigma_a, Measure::Coefficient)?, self.spectrum(sigma_s, Measure::Coefficient)?))
+            }
             Coefficients::ExtinctionAlbedo { sigma_t, albedo } => self.extinction_albedo(sigma_t, albedo),
         }
     }
@@ -78,7 +77,9 @@ impl Builder<'_> {
             PhaseDesc::Isotropic => Some(Phase::Isotropic(Isotropic)),
             PhaseDesc::HenyeyGreenstein { g } => match Phase::henyey_greenstein(g.value as f32) {
                 Ok(phase) => Some(phase),
-                Err(e) => self.fail(SceneError::at(g.span, e.to_string()).help("g is the mean cosine: 0 isotropic, towards 1 forward")),
+                Err(e) => self.fail(
+                    SceneError::at(g.span, e.to_string()).help("g is the mean cosine: 0 isotropic, towards 1 forward"),
+                ),
             },
         }
     }

@@ -59,9 +59,9 @@ impl<'a> Builder<'a> {
         for shape in &desc.shapes {
             self.shape(&mut gathered, shape);
         }
-        let groups: Vec<Option<GroupId>> = desc.groups.iter().map(|g| self.group(&mut gathered, g)).collect();
+        let groups: Vec<GroupId> = desc.groups.iter().map(|g| self.group(&mut gathered, g)).collect();
         for instance in &desc.instances {
-            let group = groups.get(instance.group.value.0 as usize).copied().flatten()?;
+            let group = *groups.get(instance.group.value.0 as usize)?;
             let transform = self.transform(instance.to_world, instance.span)?;
             if let Err(e) = gathered.builder.add_instance(group, &transform) {
                 self.errors.push(SceneError::at(instance.span, e.to_string()));
@@ -78,7 +78,7 @@ impl<'a> Builder<'a> {
         Some(Shapes { geometry, objects: gathered.objects, lights })
     }
 
-    fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> Option<GroupId> {
+    fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> GroupId {
         let id = gathered.builder.begin_group();
         for shape in &group.shapes {
             if let Some(emission) = &shape.emission {
@@ -90,7 +90,7 @@ impl<'a> Builder<'a> {
             self.shape(gathered, shape);
         }
         gathered.builder.end_group();
-        Some(id)
+        id
     }
 
     /// Adds the objects of one shape; a mesh of patches is one object a patch.
@@ -165,7 +165,9 @@ impl<'a> Builder<'a> {
                 let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
                 let mut uvs = mesh.uvs.unwrap_or_default();
                 if flip_tex_coords {
-                    uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
+                    for uv in &mut uvs {
+                        uv.y = 1.0 - uv.y;
+                    }
                 }
                 let normals = match normals {
                     Normals::Flat => Vec::new(),
@@ -257,8 +259,12 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
     let ng = unit_normal(e1, e2);
     let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(ng) > 0.999;
     let closes = (b + e2 - far).length() <= 4.0 * f32::EPSILON * size;
-    (closes && same_side && second.contains(&b) && second.contains(&c))
-        .then(|| EmitterShape::Parallelogram { a, e1, e2, ng: if mesh.reversed { -ng } else { ng } })
+    (closes && same_side && second.contains(&b) && second.contains(&c)).then(|| EmitterShape::Parallelogram {
+        a,
+        e1,
+        e2,
+        ng: if mesh.reversed { -ng } else { ng },
+    })
 }
 
 fn inline_mesh(mesh: &MeshDesc) -> Mesh {
@@ -292,12 +298,18 @@ fn cube() -> Mesh {
     let sign = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
     let positions = (0..8u32).map(|i| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4))).collect();
     let indices = vec![
-        [0, 2, 1], [1, 2, 3], // z = −1
-        [4, 5, 6], [5, 7, 6], // z = +1
-        [0, 1, 4], [1, 5, 4], // y = −1
-        [2, 6, 3], [3, 6, 7], // y = +1
-        [0, 4, 2], [2, 4, 6], // x = −1
-        [1, 3, 5], [3, 7, 5], // x = +1
+        [0, 2, 1],
+        [1, 2, 3], // z = −1
+        [4, 5, 6],
+        [5, 7, 6], // z = +1
+        [0, 1, 4],
+        [1, 5, 4], // y = −1
+        [2, 6, 3],
+        [3, 6, 7], // y = +1
+        [0, 4, 2],
+        [2, 4, 6], // x = −1
+        [1, 3, 5],
+        [3, 7, 5], // x = +1
     ];
     Mesh { positions, indices, normals: Vec::new(), uvs: Vec::new(), reversed: false }
 }

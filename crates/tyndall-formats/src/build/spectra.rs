@@ -109,7 +109,8 @@ impl Builder<'_> {
         match values.iter().find(|v| !(0.0..=most).contains(*v)) {
             None => Some(()),
             Some(v) if measure == Measure::Share => self.fail(
-                SceneError::at(span, format!("{v} is not between 0 and 1")).help("a surface cannot reflect more light than it gets"),
+                SceneError::at(span, format!("{v} is not between 0 and 1"))
+                    .help("a surface cannot reflect more light than it gets"),
             ),
             Some(v) => self.fail(SceneError::at(span, format!("{v} is negative or not finite"))),
         }

@@ -4,7 +4,7 @@
 //! Lights that a path can run into are found only by running into them. Dirac lights, which no path can run into, are
 //! gathered at each vertex.
 
-use super::Integrator;
+use super::{Integrator, in_one_lane};
 use crate::{
     light::Light,
     material::Material,
@@ -13,7 +13,7 @@ use crate::{
     path::{Vertex, shadow},
     sampling::Sampler,
     scene::Scene,
-    spectrum::{ColorMode, Lanes, Wavelengths},
+    spectrum::{Lanes, Wavelengths},
     tally::Tally,
 };
 
@@ -31,16 +31,7 @@ impl Integrator for Analog {
         sampler: &mut Sampler,
         tally: &mut Tally,
     ) -> Lanes {
-        // One lane a path stands for all of them. (The fourth lane of `rgb` is never looked at by the film.)
-        let lanes = match scene.color {
-            ColorMode::Rgb => 3,
-            ColorMode::Mono => return Lanes::splat(walk(scene, ray, &wavelengths, 0, sampler, tally)),
-            ColorMode::Spectral => 4,
-        };
-        let lane = ((u_hero * lanes as f32) as usize).min(lanes - 1);
-        let mut radiance = [0.0; 4];
-        radiance[lane] = lanes as f32 * walk(scene, ray, &wavelengths, lane, sampler, tally);
-        Lanes::new(radiance)
+        in_one_lane(scene.color, u_hero, |lane| walk(scene, ray, &wavelengths, lane, sampler, tally))
     }
 }
 
@@ -53,7 +44,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             inside.coefficients().map_or((0.0, 0.0), |c| (c.sigma_t.lane(lane), c.sigma_s.lane(lane)));
         let flight = if sigma_t > 0.0 { -sampler.rng.next_positive().ln() / sigma_t } else { f32::INFINITY };
         tally.rays += 1;
-        let hit = scene.geometry.intersect(&ray, flight);
+        let hit = scene.first_surface(&ray, flight);
 
         let (vertex, interface) = match hit {
             None if flight.is_finite() => {
@@ -61,13 +52,20 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                 if sampler.next_1d() * sigma_t >= sigma_s {
                     return radiance; // absorbed
                 }
-                let Inside::Medium { phase, .. } = inside else { return radiance };
-                (Vertex::Medium { p: ray.at(flight), dir: ray.dir, phase }, None)
+                let Inside::Medium { id, phase, .. } = inside else { return radiance };
+                let p = ray.at(flight);
+                if !scene.may_contain(id, p) {
+                    tally.leaks += 1;
+                    return radiance;
+                }
+                (Vertex::Medium { p, dir: ray.dir, phase }, None)
             }
             None => {
-                let sky = scene.lights.environments.iter().map(|id| {
-                    scene.lights.get(*id).le_from_infinity(ray.dir, w).lane(lane)
-                });
+                let sky = scene
+                    .lights
+                    .environments
+                    .iter()
+                    .map(|id| scene.lights.get(*id).le_from_infinity(ray.dir, w).lane(lane));
                 return radiance + throughput * sky.sum::<f32>();
             }
             Some(hit) => {

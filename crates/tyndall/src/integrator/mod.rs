@@ -12,7 +12,7 @@ use crate::{
     math::Ray,
     sampling::Sampler,
     scene::Scene,
-    spectrum::{Lanes, Wavelengths},
+    spectrum::{ColorMode, Lanes, Wavelengths},
     tally::Tally,
 };
 
@@ -29,4 +29,17 @@ pub trait Integrator: Debug + Sync {
         sampler: &mut Sampler,
         tally: &mut Tally,
     ) -> Lanes;
+}
+
+/// An estimate by one lane a path, chosen by `u`, that stands for all of them.
+pub(crate) fn in_one_lane(color: ColorMode, u: f32, estimate: impl FnOnce(usize) -> f32) -> Lanes {
+    let lanes = match color {
+        ColorMode::Rgb => 3, // the film never looks at the fourth
+        ColorMode::Mono => return Lanes::splat(estimate(0)),
+        ColorMode::Spectral => 4,
+    };
+    let lane = ((u * lanes as f32) as usize).min(lanes - 1);
+    let mut radiance = [0.0; 4];
+    radiance[lane] = lanes as f32 * estimate(lane);
+    Lanes::new(radiance)
 }

@@ -110,7 +110,8 @@ impl Path {
             let le = light.le_from_infinity(self.ray.dir, &self.wavelengths);
             if !le.is_zero() {
                 let weight = self.weights.emission(|| {
-                    scene.lights.probability(&self.last_vertex, *id) * light.pdf_towards(&self.last_vertex, self.ray.dir)
+                    scene.lights.probability(&self.last_vertex, *id)
+                        * light.pdf_towards(&self.last_vertex, self.ray.dir)
                 });
                 sink.add(weight * le, &self.history);
             }

@@ -15,6 +15,9 @@ impl Bounds {
     /// The box that holds nothing.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
+    /// All of space.
+    pub const EVERYTHING: Self = Self { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+
     /// The smallest box around `points`.
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, Self::with)
@@ -35,6 +38,12 @@ impl Bounds {
     /// Whether nothing is inside.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
+    }
+
+    /// Whether `p` is inside or on the boundary.
+    #[inline]
+    pub fn contains(&self, p: Vec3) -> bool {
+        (p.cmpge(self.min) & p.cmple(self.max)).all()
     }
 
     /// Edge lengths [length].

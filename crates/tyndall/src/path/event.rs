@@ -18,7 +18,7 @@ pub enum Event {
     Surface(Interaction),
     /// A collision that scatters, at this point.
     Scatter(Vec3),
-    /// A collision in a medium that only absorbs.
+    /// A collision in a medium that only absorbs; or a path that has leaked out of its medium, which is tallied.
     Absorb,
 }
 
@@ -28,14 +28,14 @@ impl Path {
     pub fn next_event(&mut self, scene: &Scene, tally: &mut Tally) -> Event {
         let flight = self.sample_flight();
         tally.rays += 1;
-        match scene.geometry.intersect(&self.ray, flight) {
+        match scene.first_surface(&self.ray, flight) {
             Some(hit) => {
                 if let Some(coefficients) = self.inside.coefficients() {
                     self.weights.pass(coefficients.transmittance(hit.t), self.hero);
                 }
                 Event::Surface(scene.geometry.interaction(&self.ray, &hit))
             }
-            None if flight.is_finite() => self.collide(flight, tally),
+            None if flight.is_finite() => self.collide(scene, flight, tally),
             None => {
                 if let Some(coefficients) = self.inside.coefficients() {
                     self.weights.pass(coefficients.transmittance(f32::INFINITY), self.hero);
@@ -62,14 +62,19 @@ impl Path {
     }
 
     #[inline]
-    fn collide(&mut self, flight: f32, tally: &mut Tally) -> Event {
-        let Inside::Medium { coefficients, .. } = &self.inside else { return Event::Escape };
+    fn collide(&mut self, scene: &Scene, flight: f32, tally: &mut Tally) -> Event {
+        let Inside::Medium { id, coefficients, .. } = &self.inside else { return Event::Escape };
+        let p = self.ray.at(flight);
+        if !scene.may_contain(*id, p) {
+            tally.leaks += 1;
+            return Event::Absorb;
+        }
         tally.collisions += 1;
         if coefficients.sigma_s.is_zero() {
             return Event::Absorb;
         }
         let transmittance = coefficients.transmittance(flight);
         self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
-        Event::Scatter(self.ray.at(flight))
+        Event::Scatter(p)
     }
 }

@@ -11,14 +11,7 @@ pub use history::History;
 pub use vertex::Vertex;
 pub use weights::PathWeights;
 
-use crate::{
-    light::Reference,
-    math::Ray,
-    medium::Inside,
-    sampling::Sampler,
-    scene::Scene,
-    spectrum::Wavelengths,
-};
+use crate::{light::Reference, math::Ray, medium::Inside, sampling::Sampler, scene::Scene, spectrum::Wavelengths};
 
 /// One path of light, followed from the camera.
 #[derive(Debug, Clone)]

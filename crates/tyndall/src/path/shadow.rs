@@ -60,6 +60,23 @@ pub fn transmittance(
     }
 }
 
+/// Whether no surface with a material stands between `origin` and a light, media left out of account.
+pub fn visible(scene: &Scene, origin: Vec3, dir: Vec3, target: &Target, tally: &mut Tally) -> bool {
+    let (mut ray, mut t_max) = segment(origin, dir, target);
+    loop {
+        tally.shadow_rays += 1;
+        let Some(hit) = scene.geometry.intersect(&ray, t_max) else { return true };
+        let surface = scene.geometry.interaction(&ray, &hit);
+        if !matches!(scene.material(&surface), Material::Null) {
+            return false;
+        }
+        (ray, t_max) = segment(surface.spawn(ray.dir).origin, dir, target);
+        if t_max <= 0.0 {
+            return true;
+        }
+    }
+}
+
 /// The ray to a light and how far it may go: the light's end is moved off its surface by the bound on its error, and
 /// the length is shortened by the rounding error of a ray–surface test.
 fn segment(origin: Vec3, dir: Vec3, target: &Target) -> (Ray, f32) {

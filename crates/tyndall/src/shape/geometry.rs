@@ -87,14 +87,22 @@ pub struct Geometry {
     /// The instruction set, asked for once.
     pub(super) level: Level,
     pub(super) shapes: Vec<Shape>,
+    /// By object: whether it is seen through instances only.
+    pub(super) grouped: Vec<bool>,
     pub(super) world: Tree,
     pub(super) groups: Vec<Tree>,
     pub(super) instances: Vec<Instance>,
 }
 
 impl Geometry {
-    pub(super) fn new(shapes: Vec<Shape>, world: Tree, groups: Vec<Tree>, instances: Vec<Instance>) -> Self {
-        Self { level: Level::new(), shapes, world, groups, instances }
+    pub(super) fn new(
+        shapes: Vec<Shape>,
+        grouped: Vec<bool>,
+        world: Tree,
+        groups: Vec<Tree>,
+        instances: Vec<Instance>,
+    ) -> Self {
+        Self { level: Level::new(), shapes, grouped, world, groups, instances }
     }
 
     /// The nearest surface with `0 < t < t_max`.
@@ -186,6 +194,11 @@ impl Geometry {
     /// A box around everything.
     pub fn bounds(&self) -> Bounds {
         self.world.bounds
+    }
+
+    /// Whether an object is part of a group, and is seen through instances only.
+    pub fn is_in_group(&self, object: ObjectId) -> bool {
+        self.grouped[object.0 as usize]
     }
 
     /// A box around one object, in world space unless it is part of a group.

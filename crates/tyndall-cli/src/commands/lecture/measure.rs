@@ -2,14 +2,13 @@
 //!
 //! An estimator with variance `V` a sample that costs `c` a sample reaches the error `MSE = V/N` after the time `N·c`:
 //! its efficiency is `1/(V·c)`, independent of how long it runs. `V` is measured as `(MSE − e²)·N`, where `e` is the
-//! reference's own standard error, as a mean over pixels and channels.
+//! reference's own standard error, as a mean over pixels and channels. Time is CPU time of all threads, so that what
+//! else runs on the machine hardly matters.
 
-use std::{
-    sync::Mutex,
-    time::{Duration, Instant},
-};
+use std::{sync::Mutex, time::Duration};
 
 use anyhow::Context;
+use cpu_time::ProcessTime;
 use rayon::ThreadPool;
 use tyndall::{
     film::Film,
@@ -53,11 +52,11 @@ pub(crate) struct Reference {
 pub(crate) struct Run {
     pub(crate) image: Image,
     pub(crate) spp: f64,
-    /// Time of all threads together [s].
+    /// CPU time of all threads [s].
     pub(crate) seconds: f64,
     /// Squared error against the reference, its own noise taken off; mean over pixels and channels.
     pub(crate) mse: f64,
-    /// Time [s] and squared error after each pass.
+    /// CPU time [s] and squared error after each pass.
     pub(crate) course: Vec<(f64, f64)>,
 }
 
@@ -67,7 +66,7 @@ impl Run {
         self.mse * self.spp
     }
 
-    /// Time of a sample [µs].
+    /// CPU time of a sample [µs].
     pub(crate) fn cost(&self) -> f64 {
         1e6 * self.seconds / (self.spp * self.image.mean.len() as f64)
     }
@@ -107,7 +106,7 @@ impl<'a> Bench<'a> {
         self.run(label, name, &self.settings(spp, 0), None, reference)
     }
 
-    /// A render of so many seconds.
+    /// A render of so many CPU seconds.
     pub(crate) fn time(
         &self,
         label: &str,
@@ -186,7 +185,7 @@ struct Stopwatch<'a> {
 }
 
 struct State {
-    start: Instant,
+    start: ProcessTime,
     paused: Duration,
     /// After the last pass.
     elapsed: Duration,
@@ -195,7 +194,7 @@ struct State {
 
 impl State {
     fn new() -> Self {
-        Self { start: Instant::now(), paused: Duration::ZERO, elapsed: Duration::ZERO, course: Vec::new() }
+        Self { start: ProcessTime::now(), paused: Duration::ZERO, elapsed: Duration::ZERO, course: Vec::new() }
     }
 
     fn running(&self) -> Duration {
@@ -233,7 +232,7 @@ impl Observer for Stopwatch<'_> {
     fn pass_done(&self, film: &Film, _: render::Progress) {
         let mut state = self.lock();
         state.elapsed = state.running();
-        let looking = Instant::now();
+        let looking = ProcessTime::now();
         if let Some(reference) = self.reference {
             let at = state.elapsed.as_secs_f64();
             state.course.push((at, squared_error(film, reference)));

@@ -1,4 +1,4 @@
-//! Error against time, both logarithmic: unbiased estimators fall with slope −1/2, and what tells them apart is how far
+//! Error against CPU time, both logarithmic: unbiased estimators fall with slope −1/2, and what tells them apart is how far
 //! to the left their line is.
 
 use std::path::Path;
@@ -8,7 +8,7 @@ use plotters::{
     coord::Shift,
     prelude::{
         ChartBuilder, Circle, DrawingArea, DrawingBackend, IntoDrawingArea, IntoLogRange, LineSeries, PathElement,
-        RGBColor, SVGBackend,
+        RGBColor, SVGBackend, SeriesLabelPosition,
     },
     style::{BLACK, Color, WHITE},
 };
@@ -69,7 +69,10 @@ fn draw_chapter<B: DrawingBackend>(
         .build_cartesian_2d(range(|p| p.0).log_scale(), range(|p| p.1).log_scale())?;
     chart
         .configure_mesh()
-        .x_desc("time [s]")
+        .x_desc("CPU time [s]")
+        .x_label_formatter(&|value| short(*value))
+        .y_label_formatter(&|value| short(*value))
+        .y_labels(16)
         .y_desc("error [% of the mean]")
         .label_style(("sans-serif", 15))
         .light_line_style(BLACK.mix(0.05))
@@ -84,8 +87,14 @@ fn draw_chapter<B: DrawingBackend>(
     }
     chart
         .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
         .background_style(WHITE.mix(0.9))
         .border_style(BLACK.mix(0.3))
         .label_font(("sans-serif", 15))
         .draw()
+}
+
+/// Labels of the axes: `100`, `0.1`.
+fn short(value: f64) -> String {
+    format!("{}", (value * 1e6).round() / 1e6)
 }

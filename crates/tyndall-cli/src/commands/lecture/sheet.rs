@@ -13,6 +13,7 @@ use crate::{
 /// One of the two renders of an estimator.
 type Choose = fn(&Version) -> &Run;
 
+const REFERENCE: &str = "reference (volpath)";
 const PAPER: [u8; 3] = [255; 3];
 const INK: [u8; 3] = [20; 3];
 const PALE: [u8; 3] = [110; 3];
@@ -24,8 +25,8 @@ const CAPTION: u32 = 40;
 
 /// Draws and writes it.
 pub(crate) fn write(path: &Path, chapters: &[Chapter]) -> Result<(), FilmError> {
-    let cell = |f: fn(&Image) -> u32| chapters.iter().map(|c| f(&c.reference.image)).max().unwrap_or(1);
-    let (w, h) = (cell(|i| i.crop.width()).max(Type::Small.width("MSE 1.23e-4, 12.34 s")), cell(|i| i.crop.height()));
+    let largest = |size: fn(&Image) -> u32| chapters.iter().map(|c| size(&c.reference.image)).max().unwrap_or(1);
+    let (w, h) = (largest(|i| i.crop.width()).max(caption_width(chapters)), largest(|i| i.crop.height()));
     let columns = 1 + chapters.iter().map(|c| c.versions.len()).max().unwrap_or(0) as u32;
     let row = HEADING + h + CAPTION + GAP;
     let mut page = Canvas::new(GAP + columns * (w + GAP), 2 * chapters.len() as u32 * row + GAP, PAPER);
@@ -42,15 +43,19 @@ pub(crate) fn write(path: &Path, chapters: &[Chapter]) -> Result<(), FilmError> 
                 show(&mut page, at, &run(version).image, &caption(version.label, run(version), &chapter.reference));
             }
             let at = (GAP + chapter.versions.len() as u32 * (w + GAP), top + HEADING);
-            show(
-                &mut page,
-                at,
-                &chapter.reference.image,
-                &["reference (volpath)".into(), spp(&chapter.reference.image)],
-            );
+            show(&mut page, at, &chapter.reference.image, &[REFERENCE.into(), spp(&chapter.reference.image)]);
         }
     }
     png::write_rgb8(path, [page.width, page.height], &page.pixels, &[])
+}
+
+/// Of the longest line under a picture [pixels].
+fn caption_width(chapters: &[Chapter]) -> u32 {
+    let captions = chapters.iter().flat_map(|chapter| {
+        let runs = chapter.versions.iter().flat_map(|v| [(v.label, &v.equal_samples), (v.label, &v.equal_time)]);
+        runs.flat_map(|(label, run)| caption(label, run, &chapter.reference))
+    });
+    captions.map(|line| Type::Small.width(&line)).max().unwrap_or(0).max(Type::Small.width(REFERENCE))
 }
 
 /// A picture and two lines under it.
@@ -64,7 +69,7 @@ fn show(page: &mut Canvas, (x, y): (u32, u32), image: &Image, lines: &[String; 2
 
 fn caption(label: &str, run: &Run, reference: &Reference) -> [String; 2] {
     let error = 100.0 * run.mse.max(0.0).sqrt() / reference.mean;
-    [format!("{label}: {error:.1} % error"), format!("{}, {}", spp(&run.image), time(run.seconds))]
+    [format!("{label}: {error:.1} % error"), format!("{}, {} CPU", spp(&run.image), time(run.seconds))]
 }
 
 fn spp(image: &Image) -> String {

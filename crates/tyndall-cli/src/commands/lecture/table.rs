@@ -15,7 +15,7 @@ pub(crate) struct Row {
     spp: f64,
     /// Variance of a sample, mean over pixels and channels.
     variance: f64,
-    /// Time of a sample on all threads together [µs].
+    /// CPU time of a sample [µs].
     microseconds_per_sample: f64,
     /// 1/(variance · cost) [1/µs].
     efficiency: f64,
@@ -104,8 +104,8 @@ pub(crate) fn markdown(chapters: &[Chapter]) -> String {
         let _ = writeln!(out, "| {} |", cells(&row).join(" | "));
     }
     out.push_str(
-        "\nVariance of one sample (mean over pixels and channels, against a reference by `volpath`); cost of one sample \
-         on all threads together; efficiency = 1/(variance · cost) [1/µs]; errors are √MSE over the mean of the image.\n",
+        "\nVariance of one sample (mean over pixels and channels, against a reference by `volpath`); CPU time \
+         of one sample; efficiency = 1/(variance · cost) [1/µs]; errors are √MSE over the mean of the image.\n",
     );
     out
 }
