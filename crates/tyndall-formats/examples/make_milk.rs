@@ -141,7 +141,7 @@ fn radiance(d: DVec3) -> [f64; 3] {
     // Curtains that glow, and the gap between them: azimuth and elevation from its middle [degrees].
     let (sin, cos) = WINDOW[0].to_radians().sin_cos();
     let towards = DVec3::new(sin * 0.85, 0.52, -cos * 0.85).normalize();
-    let curtains = DVec3::new(1.6, 1.42, 1.15) * ramp(0.1, 1.0, d.dot(towards));
+    let curtains = DVec3::new(1.55, 1.42, 1.22) * ramp(0.3, 1.0, d.dot(towards));
     let azimuth = (d.x * cos + d.z * sin).atan2(d.x * sin - d.z * cos).to_degrees();
     let pane = |x: f64, half: f64| ramp(half, half - 3.0, x.abs()) * ramp(0.6, 1.8, x.abs());
     let gap = DVec3::new(3.0, 2.8, 2.5) * pane(azimuth, 16.0) * pane(d.y.asin().to_degrees() - WINDOW[1], 27.0);
