@@ -1,15 +1,25 @@
 //! Estimators by name.
 
-use anyhow::bail;
-use tyndall::integrator::{Analog, Integrator, VolPath};
+use tyndall::{
+    integrator::{Analog, Integrator, VolPath},
+    lecture::Lecture,
+};
 
 use crate::args::IntegratorName;
 
-/// The estimator of a name, with a limit on the scatterings of a path where the user wants one.
-pub(crate) fn integrator(name: IntegratorName, max_depth: Option<u32>) -> anyhow::Result<Box<dyn Integrator>> {
-    Ok(match name {
+/// The estimator of a name. `max_depth`, a limit on the scatterings of a path, is for `volpath` alone.
+pub(crate) fn integrator(name: IntegratorName, max_depth: Option<u32>) -> Box<dyn Integrator> {
+    let lecture = |version: Lecture| -> Box<dyn Integrator> { Box::new(version) };
+    match name {
         IntegratorName::Volpath => Box::new(VolPath { max_depth, ..VolPath::default() }),
         IntegratorName::Analog => Box::new(Analog),
-        _ => bail!("the estimators of the lecture are not built yet"),
-    })
+        IntegratorName::LectureSurface0 => lecture(Lecture::SurfaceV0),
+        IntegratorName::LectureSurface05 => lecture(Lecture::SurfaceV0_5),
+        IntegratorName::LectureSurface075 => lecture(Lecture::SurfaceV0_75),
+        IntegratorName::LectureSurface10 => lecture(Lecture::SurfaceV1),
+        IntegratorName::LectureVolume0 => lecture(Lecture::VolumeV0),
+        IntegratorName::LectureVolume05 => lecture(Lecture::VolumeV0_5),
+        IntegratorName::LectureVolume075 => lecture(Lecture::VolumeV0_75),
+        IntegratorName::LectureVolume10 => lecture(Lecture::VolumeV1),
+    }
 }

@@ -13,6 +13,7 @@ mod progress;
 mod report;
 mod statistics;
 mod tev;
+mod threads;
 mod values;
 mod watch;
 

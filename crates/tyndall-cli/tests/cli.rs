@@ -125,6 +125,7 @@ fn what_cannot_be_done_ends_with_status_2_and_says_why() {
         ("render missing.pbrt", "missing.pbrt"),
         ("render scene.blend", ".pbrt"),
         ("render bad.pbrt", "radius"),
+        ("render ball.pbrt --max-depth 3 --integrator analog", "volpath"),
         ("render ball.pbrt -D g=0.5", "parameter"),
         ("compare cut.exr cut.exr", "cut.exr"),
         ("compare a.exr b.exr", "cannot read a.exr"),
@@ -264,4 +265,23 @@ fn other_resolutions_show_the_same_picture() {
     let image = desk.render("--resolution 12x9", "a.exr");
     assert_eq!((image.width, image.height), (12, 9));
     assert!(Path::new(&desk.path("a.exr")).exists());
+}
+
+/// Seventeen samples a pixel of everything in a few pixels: what counts is that all of it is there.
+#[test]
+fn the_lecture_leaves_images_a_contact_sheet_a_plot_and_a_table() {
+    let desk = Desk::new("lecture");
+    let output = desk.tyndall("lecture --spp 2 --reference-spp 16 --resolution 16x16 --out slides");
+    assert!(output.status.success(), "{}", err(&output));
+    assert_eq!(out(&output).lines().count(), 1 + 8);
+    for name in ["contact-sheet.png", "error-against-time.svg", "error-against-time.png", "table.md", "surface.pbrt"] {
+        assert!(desk.path("slides").join(name).exists(), "no {name}");
+    }
+    let table = fs::read(desk.path("slides/table.json")).unwrap();
+    let rows: Vec<serde_json::Value> = serde_json::from_slice(&table).unwrap();
+    assert_eq!(rows.len(), 8);
+    assert!(rows.iter().all(|row| row["efficiency"].is_f64()), "{rows:#?}");
+    let reference = exr::read(&desk.path("slides/volume-reference.exr")).unwrap();
+    let estimate = exr::read(&desk.path("slides/volume-version-0.75-equal-time.exr")).unwrap();
+    assert_eq!(reference.mean.len(), estimate.mean.len());
 }

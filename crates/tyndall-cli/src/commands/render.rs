@@ -2,8 +2,9 @@
 
 use std::{process::ExitCode, time::Instant};
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use cpu_time::ProcessTime;
+use rayon::ThreadPool;
 use tyndall::{
     film::{Crop, Film},
     render::{Rendering, Settings, render},
@@ -13,7 +14,7 @@ use tyndall::{
 use tyndall_formats::film::{Image, Metadata};
 
 use crate::{
-    args::{ColorName, RenderOptions, SamplerName, word},
+    args::{ColorName, IntegratorName, RenderOptions, SamplerName, word},
     integrators::integrator,
     interrupt,
     load::{Loaded, load},
@@ -21,6 +22,7 @@ use crate::{
     progress::Progress,
     report::{Course, End, Startup, Statistics, samples_per_pixel},
     tev::Tev,
+    threads::pool,
     watch::Watch,
 };
 
@@ -34,10 +36,17 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     outputs.check()?;
     let loaded = load(&options.scene, &options.define, options.resolution, color_mode(options.color))?;
     let settings = settings(options, &loaded)?;
-    let job = Job { options, loaded: &loaded, settings, outputs: &outputs, start: Instant::now() };
+    let job = Job {
+        options,
+        loaded: &loaded,
+        settings,
+        outputs: &outputs,
+        pool: pool(options.threads)?,
+        start: Instant::now(),
+    };
 
     let cpu = ProcessTime::now();
-    let rendering = job.render()?;
+    let rendering = job.render();
     let cpu_seconds = cpu.elapsed().as_secs_f64();
     if rendering.tally.paths == 0 {
         eprintln!("stopped before the first sample: nothing was saved");
@@ -68,14 +77,15 @@ struct Job<'a> {
     loaded: &'a Loaded,
     settings: Settings,
     outputs: &'a Outputs,
+    pool: ThreadPool,
     start: Instant,
 }
 
 impl Job<'_> {
-    fn render(&self) -> anyhow::Result<Rendering> {
+    fn render(&self) -> Rendering {
         let Self { options, loaded, settings, .. } = self;
         let max_depth = options.max_depth.or(loaded.desc.integrator.max_depth.map(|depth| depth.value));
-        let integrator = integrator(options.integrator, max_depth)?;
+        let integrator = integrator(options.integrator, max_depth);
         let camera = &loaded.scene.camera;
         let crop = settings.crop.unwrap_or(Crop::full(camera.width, camera.height));
         let pixels = u64::from(crop.width()) * u64::from(crop.height());
@@ -84,11 +94,9 @@ impl Job<'_> {
         let save = |film: &Film| self.outputs.write(&Image::of(film, self.metadata(film)));
         let watch = Watch::new(progress, options.time, save, tev);
 
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(threads(options));
-        let pool = threads.build().context("cannot start the threads of the render")?;
-        let rendering = pool.install(|| render(&loaded.scene, integrator.as_ref(), settings, &watch));
+        let rendering = self.pool.install(|| render(&loaded.scene, integrator.as_ref(), settings, &watch));
         watch.progress.finish();
-        Ok(rendering)
+        rendering
     }
 
     /// A connection to the viewer; without one the render goes on.
@@ -124,7 +132,7 @@ impl Job<'_> {
             true => End::Time,
         };
         let course = Course {
-            threads: threads(self.options),
+            threads: self.pool.current_num_threads(),
             outputs: self.outputs.files.iter().map(|f| f.display().to_string()).collect(),
             ended,
             startup: Startup { load: self.loaded.load_seconds, build: self.loaded.build_seconds },
@@ -136,6 +144,11 @@ impl Job<'_> {
 
 /// What the command line says, and where it is silent, the scene.
 fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings> {
+    ensure!(
+        options.max_depth.is_none() || options.integrator == IntegratorName::Volpath,
+        "--max-depth is for the integrator volpath; {} has no limit",
+        word(&options.integrator),
+    );
     let desc = &loaded.desc;
     let spp = match (options.spp, options.time) {
         (Some(spp), _) => spp,
@@ -172,13 +185,6 @@ pub(crate) fn color_mode(name: ColorName) -> ColorMode {
         ColorName::Rgb => ColorMode::Rgb,
         ColorName::Mono => ColorMode::Mono,
         ColorName::Spectral => ColorMode::Spectral,
-    }
-}
-
-fn threads(options: &RenderOptions) -> usize {
-    match options.threads {
-        Some(threads) => threads.into(),
-        None => std::thread::available_parallelism().map_or(1, usize::from),
     }
 }
 

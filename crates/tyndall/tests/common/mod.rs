@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test file uses its own part
 
 use tyndall::{
-    bsdf::Sides,
+    bsdf::{Sides, microfacet::Distribution},
     camera::Camera,
     film::Filter,
     integrator::Integrator,
@@ -48,6 +48,7 @@ pub(crate) fn glass(eta: f32, alpha: f32) -> Material {
     Material::Dielectric {
         eta: Index::Constant(eta),
         alpha: [alpha; 2],
+        distribution: Distribution::TrowbridgeReitz,
         reflection_tint: grey(1.0),
         transmission_tint: grey(1.0),
     }

@@ -7,7 +7,6 @@
 
 use std::{sync::Mutex, time::Duration};
 
-use anyhow::Context;
 use cpu_time::ProcessTime;
 use rayon::ThreadPool;
 use tyndall::{
@@ -24,6 +23,7 @@ use crate::{
     load::Loaded,
     progress::Progress,
     report::samples_per_pixel,
+    threads::pool,
 };
 
 /// The reference has random numbers of its own: were they shared, errors would cancel.
@@ -79,41 +79,27 @@ impl Run {
 
 impl<'a> Bench<'a> {
     pub(crate) fn new(loaded: &'a Loaded, topic: &'static str, options: &'a LectureOptions) -> anyhow::Result<Self> {
-        let threads = options.threads.map_or(0, usize::from);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")?;
-        Ok(Self { loaded, topic, options, pool })
+        Ok(Self { loaded, topic, options, pool: pool(options.threads)? })
     }
 
     /// The reference, by `volpath`.
-    pub(crate) fn reference(&self) -> anyhow::Result<Reference> {
+    pub(crate) fn reference(&self) -> Reference {
         let settings = self.settings(self.options.reference_spp, REFERENCE_SEED);
         let stopwatch = self.stopwatch("reference", None, None);
-        let film = self.render(IntegratorName::Volpath, &settings, &stopwatch)?;
+        let film = self.render(IntegratorName::Volpath, &settings, &stopwatch);
         let image = self.image(&film, IntegratorName::Volpath, &settings, stopwatch.seconds());
         let mse = image.standard_error.as_deref().map_or(0.0, |se| mean(se, |e| e * e));
         let mean = mean(&image.mean, |v| v);
-        Ok(Reference { image, mse, mean })
+        Reference { image, mse, mean }
     }
 
     /// A render of so many samples a pixel.
-    pub(crate) fn samples(
-        &self,
-        label: &str,
-        name: IntegratorName,
-        spp: u32,
-        reference: &Reference,
-    ) -> anyhow::Result<Run> {
+    pub(crate) fn samples(&self, label: &str, name: IntegratorName, spp: u32, reference: &Reference) -> Run {
         self.run(label, name, &self.settings(spp, 0), None, reference)
     }
 
     /// A render of so many CPU seconds.
-    pub(crate) fn time(
-        &self,
-        label: &str,
-        name: IntegratorName,
-        seconds: f64,
-        reference: &Reference,
-    ) -> anyhow::Result<Run> {
+    pub(crate) fn time(&self, label: &str, name: IntegratorName, seconds: f64, reference: &Reference) -> Run {
         self.run(label, name, &self.settings(u32::MAX, 0), Some(seconds), reference)
     }
 
@@ -124,20 +110,20 @@ impl<'a> Bench<'a> {
         settings: &Settings,
         limit: Option<f64>,
         reference: &Reference,
-    ) -> anyhow::Result<Run> {
+    ) -> Run {
         let stopwatch = self.stopwatch(label, limit, Some(reference));
-        let film = self.render(name, settings, &stopwatch)?;
+        let film = self.render(name, settings, &stopwatch);
         let seconds = stopwatch.seconds();
         let image = self.image(&film, name, settings, seconds);
         let course = stopwatch.course();
-        Ok(Run { mse: squared_error(&film, reference), spp: samples_per_pixel(&film), image, seconds, course })
+        Run { mse: squared_error(&film, reference), spp: samples_per_pixel(&film), image, seconds, course }
     }
 
-    fn render(&self, name: IntegratorName, settings: &Settings, stopwatch: &Stopwatch) -> anyhow::Result<Film> {
-        let integrator = integrator(name, None)?;
+    fn render(&self, name: IntegratorName, settings: &Settings, stopwatch: &Stopwatch) -> Film {
+        let integrator = integrator(name, None);
         let rendering = self.pool.install(|| render(&self.loaded.scene, integrator.as_ref(), settings, stopwatch));
         stopwatch.progress.finish();
-        Ok(rendering.film)
+        rendering.film
     }
 
     /// Independent samples, so that the variance of the mean is that of a sample over their number.
@@ -164,7 +150,7 @@ impl<'a> Bench<'a> {
             scene: format!("lecture/{}.pbrt", self.topic),
             scene_hash: self.loaded.hash.clone(),
             integrator: word(&name),
-            color: "rgb".into(),
+            color: "mono".into(),
             sampler: "independent".into(),
             spp: if settings.spp == u32::MAX { 0 } else { settings.spp },
             samples_per_pixel: samples_per_pixel(film),
