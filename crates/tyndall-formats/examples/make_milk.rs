@@ -60,20 +60,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// A polygon whose corners are rounded by arcs, each point with its exact normal, to the right of the way.
 fn rounded(corners: &[(DVec2, f64)]) -> Vec<ProfilePoint> {
     let right = |way: DVec2| DVec2::new(way.y, -way.x);
-    let way = |i: usize| (corners[i + 1].0 - corners[i].0).normalize();
     let last = corners.len() - 1;
-    let mut profile = vec![(corners[0].0, right(way(0)))];
-    for i in 1..last {
-        let (before, after, radius) = (right(way(i - 1)), right(way(i)), corners[i].1);
+    let way = |from: DVec2, to: DVec2| (to - from).normalize();
+    let mut profile = vec![(corners[0].0, right(way(corners[0].0, corners[1].0)))];
+    for neighbours in corners.windows(3) {
+        let &[(from, _), (corner, radius), (to, _)] = neighbours else { continue };
+        let (before, after) = (right(way(from, corner)), right(way(corner, to)));
         let turn = before.angle_to(after);
-        let start = corners[i].0 - way(i - 1) * radius * (turn.abs() / 2.0).tan();
+        let start = corner - way(from, corner) * radius * (turn.abs() / 2.0).tan();
         let centre = start - before * radius * turn.signum();
         for step in 0..=STEPS {
             let normal = DVec2::from_angle(turn * step as f64 / STEPS as f64).rotate(before);
             profile.push((centre + normal * radius * turn.signum(), normal));
         }
     }
-    profile.push((corners[last].0, right(way(last - 1))));
+    profile.push((corners[last].0, right(way(corners[last - 1].0, corners[last].0))));
     profile
 }
 
