@@ -24,7 +24,11 @@ use tyndall::{
     spectrum::{ColorMode, Lanes, Wavelengths},
     tally::Tally,
 };
-use tyndall_formats::film::{Curve, Image, Metadata, Tone, png};
+use tyndall_formats::{
+    build::build,
+    film::{Curve, Image, Metadata, Tone, png},
+    load,
+};
 
 /// Ambient occlusion up to a distance [length].
 #[derive(Debug)]
@@ -47,11 +51,9 @@ impl Integrator for Occlusion {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let scene_file = args().nth(1).ok_or("name a scene and a picture")?;
-    let picture = args().nth(2).ok_or("name a picture too, in .png")?;
-    let (desc, sources) = tyndall_formats::load(Path::new(&scene_file), &[]).map_err(|faults| faults.render(true))?;
-    let (scene, _) =
-        tyndall_formats::build::build(&desc, sources, ColorMode::Mono).map_err(|faults| faults.render(true))?;
+    let [scene_file, picture] = [1, 2].map(|i| args().nth(i).unwrap_or_default());
+    let (desc, sources) = load(Path::new(&scene_file), &[]).map_err(|faults| faults.render(false))?;
+    let (scene, _) = build(&desc, sources, ColorMode::Mono).map_err(|faults| faults.render(false))?;
     let settings = Settings { spp: 64, ..Settings::default() };
     let rendering = render(&scene, &Occlusion { reach: 1.0 }, &settings, &());
     let image = Image::of(&rendering.film, Metadata::default());
