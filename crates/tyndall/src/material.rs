@@ -1,7 +1,7 @@
 //! What a surface is made of, as the scene has it: spectra that become a [`Bsdf`] at the wavelengths of a path.
 
 use crate::{
-    bsdf::{Bsdf, Sides},
+    bsdf::{Bsdf, Sides, microfacet::Distribution},
     spectrum::{Lanes, Spectrum, Wavelengths, glass::Glass},
 };
 
@@ -21,6 +21,8 @@ pub enum Material {
         metal: Metal,
         /// Roughness along the tangent and across [1].
         alpha: [f32; 2],
+        /// The law of the slopes, where it is rough.
+        distribution: Distribution,
         /// A factor on what is reflected [1].
         tint: Spectrum,
         /// The sides that reflect.
@@ -32,6 +34,8 @@ pub enum Material {
         eta: Index,
         /// Roughness along the tangent and across [1].
         alpha: [f32; 2],
+        /// The law of the slopes, where it is rough.
+        distribution: Distribution,
         /// A factor on what is reflected [1].
         reflection_tint: Spectrum,
         /// A factor on what is transmitted [1].
@@ -66,26 +70,24 @@ pub enum Index {
     Glass(Glass),
 }
 
-/// The sodium D line [nm], for which a single index is meant.
-const SODIUM_D: f32 = 589.3;
-
 impl Material {
     /// The BSDF in the lanes of a path, whose lane `hero` decides where wavelengths part.
     #[inline]
     pub fn bsdf(&self, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
         match self {
             Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(wavelengths)).on(*sides),
-            Self::Conductor { metal, alpha: [x, y], tint, sides } => {
+            Self::Conductor { metal, alpha: [x, y], distribution, tint, sides } => {
                 let bsdf = match metal {
                     Metal::Index { eta, k } => Bsdf::conductor(eta.eval(wavelengths), k.eval(wavelengths), *x, *y),
                     Metal::Reflectance(r) => Bsdf::conductor_of_reflectance(r.eval(wavelengths), *x, *y),
                     // |1 − ik| = |1 + ik|: a purely imaginary index reflects all.
                     Metal::Mirror => Bsdf::conductor(Lanes::ZERO, Lanes::ONE, *x, *y),
                 };
-                bsdf.tinted(tint.eval(wavelengths), Lanes::ONE).on(*sides)
+                bsdf.distributed(*distribution).tinted(tint.eval(wavelengths), Lanes::ONE).on(*sides)
             }
-            Self::Dielectric { eta, alpha: [x, y], reflection_tint, transmission_tint } => {
+            Self::Dielectric { eta, alpha: [x, y], distribution, reflection_tint, transmission_tint } => {
                 Bsdf::dielectric(eta.at(wavelengths, hero), *x, *y)
+                    .distributed(*distribution)
                     .tinted(reflection_tint.eval(wavelengths), transmission_tint.eval(wavelengths))
             }
             Self::Null => Bsdf::Null,
@@ -100,11 +102,11 @@ impl Material {
 }
 
 impl Index {
+    #[inline]
     fn at(&self, wavelengths: &Wavelengths, hero: usize) -> f32 {
-        match (self, wavelengths) {
-            (Self::Constant(eta), _) => *eta,
-            (Self::Glass(glass), Wavelengths::Spectral { lambda, .. }) => glass.eta(lambda[hero]),
-            (Self::Glass(glass), _) => glass.eta(SODIUM_D),
+        match self {
+            Self::Constant(eta) => *eta,
+            Self::Glass(glass) => glass.eta(wavelengths.hero(hero)),
         }
     }
 }

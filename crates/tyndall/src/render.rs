@@ -3,6 +3,8 @@
 //! The image depends on the scene and the settings alone. Every sample owns its random numbers (pixel, index, seed) and
 //! every pixel adds its samples in the order of their index, so threads, tiles, passes and crops cannot be seen in it.
 
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
 use rayon::prelude::*;
 
 use crate::{
@@ -88,9 +90,8 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
         Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)));
     let mut tiles = tiles_of(film.crop);
     let total = film.pixels.len() as u64 * u64::from(settings.spp);
-    let samples = std::sync::atomic::AtomicU64::new(0);
-    let stopped = std::sync::atomic::AtomicBool::new(false);
-    use std::sync::atomic::Ordering::Relaxed;
+    let samples = AtomicU64::new(0);
+    let stopped = AtomicBool::new(false);
 
     for pass in passes(settings.spp) {
         tiles.par_iter_mut().with_max_len(1).for_each(|tile| {

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use testkit::quadrature::{adaptive_rectangle, direction, gauss_legendre};
 use testkit::{Family, Grid, Outcome, Stream, chi_square, close, z_test};
-use tyndall::bsdf::microfacet::{TrowbridgeReitz, roughness_to_alpha};
-use tyndall::bsdf::{Bsdf, BsdfSample, ScatterKind, Sides};
+use tyndall::bsdf::microfacet::{Distribution, Microfacets, roughness_to_alpha};
+use tyndall::bsdf::{Bsdf, BsdfSample, RoughConductor, RoughDielectric, ScatterKind, Sides};
 use tyndall::math::{Vec2, Vec3};
 use tyndall::phase::{Isotropic, Phase, Rayleigh, deflect};
 use tyndall::spectrum::Lanes;
@@ -37,8 +37,17 @@ fn bsdfs() -> Vec<(&'static str, Bsdf)> {
         ("diamond, rough 1", Bsdf::dielectric(2.4, 1.0, 1.0)),
         ("glass, rough 0.2, tinted", Bsdf::dielectric(1.5, 0.2, 0.2).tinted(ochre, Lanes::rgb(0.1, 0.6, 1.0))),
         ("glass, rough 0.2, reflecting nothing", Bsdf::dielectric(1.5, 0.2, 0.2).tinted(Lanes::ZERO, Lanes::ONE)),
+        ("gold, rough 0.1, Beckmann", Bsdf::conductor(gold_eta, gold_k, 0.1, 0.1).distributed(Distribution::Beckmann)),
+        ("mirror, rough 1 and 0.3, Beckmann", beckmann_mirror()),
+        ("glass, rough 0.1, Beckmann", Bsdf::dielectric(1.5, 0.1, 0.1).distributed(Distribution::Beckmann)),
+        ("glass, rough 0.4 and 0.2, Beckmann", Bsdf::dielectric(1.5, 0.4, 0.2).distributed(Distribution::Beckmann)),
+        ("diamond, rough 1, Beckmann", Bsdf::dielectric(2.4, 1.0, 1.0).distributed(Distribution::Beckmann)),
         ("null", Bsdf::Null),
     ]
+}
+
+fn beckmann_mirror() -> Bsdf {
+    Bsdf::conductor(Lanes::ZERO, Lanes::ONE, 1.0, 0.3).distributed(Distribution::Beckmann)
 }
 
 fn metal_on_the_outside() -> Bsdf {
@@ -155,13 +164,15 @@ fn microfacets_and_the_visible_ones_among_them_integrate_to_one() {
         let cell = |i: usize, n: usize, to: f64| [to * i as f64 / n as f64, to * (i + 1) as f64 / n as f64];
         (0..160 * 64).map(|i| adaptive_rectangle(cell(i / 64, 160, 1.0), cell(i % 64, 64, TAU), 1e-8, 6, &g)).sum()
     };
-    for (alpha_x, alpha_y) in [(0.05, 0.05), (0.3, 0.1), (1.0, 1.0)] {
-        let d = TrowbridgeReitz { alpha_x, alpha_y };
-        let projected = hemisphere(&|m| d.density(m) * m.z);
-        assert!((projected - 1.0).abs() < 2e-5, "alpha {alpha_x} {alpha_y}: {projected}");
-        for wo in directions().into_iter().filter(|wo| wo.z > 0.0) {
-            let visible = hemisphere(&|m| d.visible_density(wo, m));
-            assert!((visible - 1.0).abs() < 2e-5, "alpha {alpha_x} {alpha_y} from {wo}: {visible}");
+    for distribution in [Distribution::TrowbridgeReitz, Distribution::Beckmann] {
+        for (alpha_x, alpha_y) in [(0.05, 0.05), (0.3, 0.1), (1.0, 1.0)] {
+            let d = Microfacets { alpha_x, alpha_y, distribution };
+            let projected = hemisphere(&|m| d.density(m) * m.z);
+            assert!((projected - 1.0).abs() < 2e-5, "{d:?}: {projected}");
+            for wo in directions().into_iter().filter(|wo| wo.z > 0.0) {
+                let visible = hemisphere(&|m| d.visible_density(wo, m));
+                assert!((visible - 1.0).abs() < 2e-5, "{d:?} from {wo}: {visible}");
+            }
         }
     }
 }
@@ -192,7 +203,8 @@ fn every_weight_is_the_value_over_the_density() {
 }
 
 /// Radiance over the squared index is what is exchanged: `f(o, i)/η_o² = f(i, o)/η_i²`. Where a microfacet is met at
-/// grazing incidence, the rounding of the directions is divided by that small cosine.
+/// grazing incidence, the rounding of the directions is divided by that small cosine, and an exponential magnifies it by
+/// its exponent.
 #[test]
 fn exchanging_the_directions_changes_nothing_but_the_squared_index() {
     for (name, bsdf) in bsdfs() {
@@ -207,10 +219,24 @@ fn exchanging_the_directions_changes_nothing_but_the_squared_index() {
             let there = bsdf.eval(a, b) / (b.z.abs() * index(a) * index(a));
             let back = bsdf.eval(b, a) / (a.z.abs() * index(b) * index(b));
             let m = (a * index(a) + b * index(b)).normalize();
-            let rounding = 2e-5 + 4.0 * f32::EPSILON / m.dot(a).abs().min(m.dot(b).abs());
+            let facing = m.dot(a).abs().min(m.dot(b).abs());
+            let rounding = 2e-5 + (4.0 + 8.0 * exponent(&bsdf, m)) * f32::EPSILON / facing;
             let rest = (there - back).map(f32::abs).max_lane();
             assert!(rest <= rounding * there.max_lane(), "{name}, {a} and {b}: {there:?} and {back:?}");
         }
+    }
+}
+
+/// The exponent of Beckmann's density, if it is that.
+fn exponent(bsdf: &Bsdf, m: Vec3) -> f32 {
+    match bsdf {
+        Bsdf::RoughConductor(RoughConductor { microfacets: d, .. })
+        | Bsdf::RoughDielectric(RoughDielectric { microfacets: d, .. })
+            if d.distribution == Distribution::Beckmann =>
+        {
+            ((m.x / d.alpha_x).powi(2) + (m.y / d.alpha_y).powi(2)) / (m.z * m.z)
+        }
+        _ => 0.0,
     }
 }
 

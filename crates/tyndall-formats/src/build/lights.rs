@@ -72,7 +72,7 @@ impl Builder<'_> {
                     *scale as f32,
                 );
                 match map {
-                    Ok(map) => Some(Light::Map(map)),
+                    Ok(map) => Some(Light::Map(Box::new(map))),
                     Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
                 }
             }

@@ -1,7 +1,7 @@
 //! Materials.
 
 use tyndall::{
-    bsdf::Sides,
+    bsdf::{Sides, microfacet::Distribution},
     material::{Index, Material, Metal},
     spectrum::{
         Spectrum,
@@ -13,7 +13,7 @@ use super::{Builder, spectra::Measure};
 use crate::{
     desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc},
     error::SceneError,
-    source::{Span, Spanned},
+    source::Spanned,
 };
 
 impl Builder<'_> {
@@ -25,14 +25,16 @@ impl Builder<'_> {
             }
             MaterialKind::Conductor { optics, roughness, tint } => Some(Material::Conductor {
                 metal: self.metal(optics)?,
-                alpha: self.alpha(roughness, desc.span)?,
+                alpha: alpha(roughness),
+                distribution: distribution(roughness),
                 tint: self.tint(tint.as_ref())?,
                 sides,
             }),
             MaterialKind::Dielectric { eta, roughness, reflection_tint, transmission_tint } => {
                 Some(Material::Dielectric {
                     eta: self.index(eta)?,
-                    alpha: self.alpha(roughness, desc.span)?,
+                    alpha: alpha(roughness),
+                    distribution: distribution(roughness),
                     reflection_tint: self.tint(reflection_tint.as_ref())?,
                     transmission_tint: self.tint(transmission_tint.as_ref())?,
                 })
@@ -69,20 +71,18 @@ impl Builder<'_> {
         }
     }
 
-    fn alpha(&mut self, roughness: &RoughnessDesc, span: Span) -> Option<[f32; 2]> {
-        let alpha = roughness.alpha().map(|a| a as f32);
-        if roughness.distribution == MicrofacetKind::Beckmann
-            && alpha.iter().any(|a| *a >= tyndall::bsdf::SMOOTHEST_ALPHA)
-        {
-            return self.fail(
-                SceneError::at(span, "Beckmann microfacets are not known yet")
-                    .help("write <string name=\"distribution\" value=\"ggx\"/>"),
-            );
-        }
-        Some(alpha)
-    }
-
     fn tint(&mut self, tint: Option<&Spanned<SpectrumDesc>>) -> Option<Spectrum> {
         tint.map_or(Some(Spectrum::constant(1.0)), |t| self.spectrum(t, Measure::Share))
+    }
+}
+
+fn alpha(roughness: &RoughnessDesc) -> [f32; 2] {
+    roughness.alpha().map(|a| a as f32)
+}
+
+fn distribution(roughness: &RoughnessDesc) -> Distribution {
+    match roughness.distribution {
+        MicrofacetKind::Ggx => Distribution::TrowbridgeReitz,
+        MicrofacetKind::Beckmann => Distribution::Beckmann,
     }
 }

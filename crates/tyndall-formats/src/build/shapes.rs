@@ -59,9 +59,9 @@ impl<'a> Builder<'a> {
         for shape in &desc.shapes {
             self.shape(&mut gathered, shape);
         }
-        let groups: Vec<Option<GroupId>> = desc.groups.iter().map(|g| self.group(&mut gathered, g)).collect();
+        let groups: Vec<GroupId> = desc.groups.iter().map(|g| self.group(&mut gathered, g)).collect();
         for instance in &desc.instances {
-            let group = groups.get(instance.group.value.0 as usize).copied().flatten()?;
+            let group = *groups.get(instance.group.value.0 as usize)?;
             let transform = self.transform(instance.to_world, instance.span)?;
             if let Err(e) = gathered.builder.add_instance(group, &transform) {
                 self.errors.push(SceneError::at(instance.span, e.to_string()));
@@ -78,7 +78,7 @@ impl<'a> Builder<'a> {
         Some(Shapes { geometry, objects: gathered.objects, lights })
     }
 
-    fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> Option<GroupId> {
+    fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> GroupId {
         let id = gathered.builder.begin_group();
         for shape in &group.shapes {
             if let Some(emission) = &shape.emission {
@@ -90,7 +90,7 @@ impl<'a> Builder<'a> {
             self.shape(gathered, shape);
         }
         gathered.builder.end_group();
-        Some(id)
+        id
     }
 
     /// Adds the objects of one shape; a mesh of patches is one object a patch.
@@ -165,7 +165,9 @@ impl<'a> Builder<'a> {
                 let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
                 let mut uvs = mesh.uvs.unwrap_or_default();
                 if flip_tex_coords {
-                    uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
+                    for uv in &mut uvs {
+                        uv.y = 1.0 - uv.y;
+                    }
                 }
                 let normals = match normals {
                     Normals::Flat => Vec::new(),

@@ -1,3 +1,5 @@
+//! Images that are right, and images that are not.
+
 use proptest::prelude::*;
 
 use super::*;

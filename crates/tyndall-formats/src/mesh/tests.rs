@@ -1,3 +1,5 @@
+//! Meshes that are right, and meshes that are not.
+
 use proptest::prelude::*;
 
 use super::*;

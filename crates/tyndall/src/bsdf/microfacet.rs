@@ -1,23 +1,34 @@
-//! Trowbridge–Reitz (GGX) microfacets: the slopes of a rough surface, what of them can be seen, and how to draw them.
+//! Microfacets: the slopes of a rough surface, what of them can be seen, and how to draw them.
 //!
-//! With `s(w) = √(w_z² + α_x² w_x² + α_y² w_y²)`, for directions above the surface:
+//! With `r² = α_x² w_x² + α_y² w_y²`, for directions above the surface:
 //!
 //! ```text
-//! D(m)      = 1 / (π α_x α_y ((m_x/α_x)² + (m_y/α_y)² + m_z²)²)      density of normals [1/sr]
-//! Λ(w)      = (s/w_z − 1)/2,   G₁ = 1/(1 + Λ)                        Smith's masking
+//! t²        = ((m_x/α_x)² + (m_y/α_y)²) / m_z²                        slope of a normal, in units of the roughness
+//! D(m)      = 1 / (π α_x α_y m_z⁴ (1 + t²)²)                          Trowbridge and Reitz (GGX) [1/sr]
+//! D(m)      = exp(−t²) / (π α_x α_y m_z⁴)                             Beckmann [1/sr]
+//! s(w)      = √(w_z² + r²)                                            Trowbridge and Reitz
+//! s(w)      = w_z erf(w_z/r) + r exp(−(w_z/r)²)/√π                    Beckmann
+//! Λ(w)      = (s/w_z − 1)/2,   G₁ = 1/(1 + Λ)                         Smith's masking, of both
 //! G₂(o, i)  = 1/(1 + Λ_o + Λ_i) = 2 o_z i_z / (s_o i_z + s_i o_z)     height-correlated masking and shadowing
 //! D_o(m)    = G₁(o) D(m) (o·m) / o_z = 2 D(m) (o·m) / (o_z + s_o)     visible normals [1/sr]
 //! ```
 //!
-//! Written with `s`, nothing divides by a cosine that vanishes at grazing angles. `G₂` serves reflection and transmission
-//! alike, as in pbrt. Visible normals are drawn as a uniform point on a spherical cap, without a frame.
+//! Written with `s`, nothing divides by a cosine that vanishes at grazing angles, and a distribution is its `D`, its `s`
+//! and its way to draw visible normals. `G₂` serves reflection and transmission alike, as in pbrt; Mitsuba takes the
+//! product `G₁(o) G₁(i)`, which shadows more.
+//!
+//! Visible normals are drawn for unit roughness and stretched. Trowbridge and Reitz: a uniform point on a spherical cap,
+//! without a frame. Beckmann: across the plane of `o` the slope is Gaussian; within it, the slope `x` has the cumulative
+//! distribution `∝ o_z √π (1 + erf x) + √(1 − o_z²) exp(−x²)` below `o_z/√(1 − o_z²)`, which is inverted numerically.
 //!
 //! | parameter | meaning | range |
 //! |---|---|---|
 //! | `alpha_x`, `alpha_y` | roughness along the tangents: the scale of the slopes \[1\] | about 0.001 to 1 |
+//! | `distribution` | the law of the slopes | |
 //!
-//! Source: Trowbridge and Reitz 1975; Walter et al. 2007; Heitz 2014, "Understanding the masking-shadowing function";
-//! sampling: Dupuy and Benyoub 2023, "Sampling visible GGX normals with spherical caps".
+//! Source: Beckmann and Spizzichino 1963; Trowbridge and Reitz 1975; Walter et al. 2007; Heitz 2014, "Understanding the
+//! masking-shadowing function"; sampling: Dupuy and Benyoub 2023, "Sampling visible GGX normals with spherical caps";
+//! Heitz and d'Eon 2014, "Importance sampling microfacet-based BSDFs using the distribution of visible normals".
 
 use std::f32::consts::PI;
 
@@ -29,35 +40,76 @@ pub fn roughness_to_alpha(roughness: f32) -> f32 {
     roughness.max(0.0).sqrt()
 }
 
-/// The distribution of microfacet normals.
+/// The law of the slopes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Distribution {
+    /// Trowbridge and Reitz 1975, known as GGX: steep slopes are frequent.
+    #[default]
+    TrowbridgeReitz,
+    /// Beckmann and Spizzichino 1963: Gaussian slopes, of variance `α²/2` along each tangent.
+    Beckmann,
+}
+
+/// The microfacets of a rough surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrowbridgeReitz {
+pub struct Microfacets {
     /// Roughness along x \[1\].
     pub alpha_x: f32,
     /// Roughness along y \[1\].
     pub alpha_y: f32,
+    /// The law of their slopes.
+    pub distribution: Distribution,
 }
 
-impl TrowbridgeReitz {
-    /// The distribution, or `None` for a surface that is smooth in both directions.
+/// Slopes beyond this many times the roughness are left out of Beckmann's distribution: one in 10¹¹.
+const STEEPEST: f64 = 5.0;
+
+/// `1/√π`.
+const FRAC_1_SQRT_PI: f64 = std::f64::consts::FRAC_2_SQRT_PI * 0.5;
+
+impl Microfacets {
+    /// Those of Trowbridge and Reitz, or `None` for a surface that is smooth in both directions.
     pub fn unless_smooth(alpha_x: f32, alpha_y: f32) -> Option<Self> {
-        (alpha_x.max(alpha_y) >= SMOOTHEST_ALPHA)
-            .then(|| Self { alpha_x: alpha_x.max(SMOOTHEST_ALPHA), alpha_y: alpha_y.max(SMOOTHEST_ALPHA) })
+        (alpha_x.max(alpha_y) >= SMOOTHEST_ALPHA).then(|| Self {
+            alpha_x: alpha_x.max(SMOOTHEST_ALPHA),
+            alpha_y: alpha_y.max(SMOOTHEST_ALPHA),
+            distribution: Distribution::TrowbridgeReitz,
+        })
     }
 
     /// `D(m)` [1/sr]: `∫ D(m) m_z dm = 1` over the hemisphere.
     #[inline]
     pub fn density(&self, m: Vec3) -> f32 {
         let (x, y) = (m.x / self.alpha_x, m.y / self.alpha_y);
-        let q = x * x + y * y + m.z * m.z;
-        1.0 / (PI * self.alpha_x * self.alpha_y * q * q)
+        let z2 = m.z * m.z;
+        let unit = PI * self.alpha_x * self.alpha_y;
+        match self.distribution {
+            Distribution::TrowbridgeReitz => {
+                let q = x * x + y * y + z2;
+                1.0 / (unit * q * q)
+            }
+            Distribution::Beckmann => {
+                let slope2 = (x * x + y * y) / z2;
+                // Also false for a normal in the surface, whose slope is infinite or not a number.
+                if slope2 < 80.0 { libm::expf(-slope2) / (unit * z2 * z2) } else { 0.0 }
+            }
+        }
     }
 
-    /// `s(w)`: the length of `w` in the space where the surface has unit roughness.
+    /// `s(w)`, at least `w_z`: what Smith's masking of `w` depends on.
     #[inline]
     pub fn stretched(&self, w: Vec3) -> f32 {
         let (x, y) = (w.x * self.alpha_x, w.y * self.alpha_y);
-        (x * x + y * y + w.z * w.z).sqrt()
+        let r2 = x * x + y * y;
+        match self.distribution {
+            Distribution::TrowbridgeReitz => (r2 + w.z * w.z).sqrt(),
+            Distribution::Beckmann if r2 == 0.0 => w.z,
+            Distribution::Beckmann => {
+                let r = r2.sqrt();
+                let a = w.z / r;
+                (w.z * libm::erff(a) + r * libm::expf(-a * a) * FRAC_1_SQRT_PI as f32).max(w.z)
+            }
+        }
     }
 
     /// `G₁(w)` in [0, 1]: the part of the microfacets that face `w` (`w_z > 0`) which is not hidden from it.
@@ -88,12 +140,57 @@ impl TrowbridgeReitz {
     /// A normal among those visible from `wo` (`wo_z > 0`), with `u` in [0, 1).
     #[inline]
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
-        let o = Vec3::new(wo.x * self.alpha_x, wo.y * self.alpha_y, wo.z) / self.stretched(wo);
-        // A uniform point c of the cap z ≥ −o_z; 1 − c_z and 1 + c_z apart, since one of them is small for small α.
-        let (below, above) = (u.y * (1.0 + o.z), (1.0 - u.y) * (1.0 + o.z));
-        let sin_theta = (below * (1.0 - o.z + above)).max(0.0).sqrt();
-        let (sin_phi, cos_phi) = sin_cos_turn(u.x);
-        let h = Vec3::new(sin_theta * cos_phi + o.x, sin_theta * sin_phi + o.y, above);
+        let o = Vec3::new(wo.x * self.alpha_x, wo.y * self.alpha_y, wo.z);
+        let o = o / o.length();
+        let h = match self.distribution {
+            Distribution::TrowbridgeReitz => visible_on_cap(o, u),
+            Distribution::Beckmann => visible_gaussian(o, u),
+        };
         Vec3::new(h.x * self.alpha_x, h.y * self.alpha_y, h.z).normalize()
     }
+}
+
+/// A visible normal of unit roughness after Trowbridge and Reitz, not normalised, for a unit `o`.
+#[inline]
+fn visible_on_cap(o: Vec3, u: Vec2) -> Vec3 {
+    // A uniform point c of the cap z ≥ −o_z; 1 − c_z and 1 + c_z apart, since one of them is small for small α.
+    let (below, above) = (u.y * (1.0 + o.z), (1.0 - u.y) * (1.0 + o.z));
+    let sin_theta = (below * (1.0 - o.z + above)).max(0.0).sqrt();
+    let (sin_phi, cos_phi) = sin_cos_turn(u.x);
+    Vec3::new(sin_theta * cos_phi + o.x, sin_theta * sin_phi + o.y, above)
+}
+
+/// A visible normal of unit roughness after Beckmann, not normalised, for a unit `o`.
+fn visible_gaussian(o: Vec3, u: Vec2) -> Vec3 {
+    let o = o.as_dvec3();
+    let sin = o.x.hypot(o.y);
+    let along = if sin == 0.0 { glam::DVec2::X } else { o.truncate() / sin };
+    let x = visible_slope(o.z, sin, f64::from(u.x));
+    let y = visible_slope(1.0, 0.0, f64::from(u.y));
+    // A facet of slope (x, y) has the normal (−x, −y, 1), turned to the azimuth of o.
+    Vec3::new((along.y * y - along.x * x) as f32, (-along.y * x - along.x * y) as f32, 1.0)
+}
+
+/// The slope `x` along a direction of polar angle θ below which lies the share `u` of what is seen of Gaussian facets:
+/// `F(x) = u F(cot θ)` with `F(x) = cos θ √π (1 + erf x) + sin θ exp(−x²)`.
+///
+/// Newton's method, kept inside an interval that shrinks from both sides.
+fn visible_slope(cos: f64, sin: f64, u: f64) -> f64 {
+    let share = |x: f64| cos * (1.0 + libm::erf(x)) + sin * libm::exp(-x * x) * FRAC_1_SQRT_PI;
+    let steepest = if cos < STEEPEST * sin { cos / sin } else { STEEPEST };
+    let (mut low, mut high) = (-STEEPEST, steepest);
+    let wanted = u * share(high);
+    let mut x = 0f64.min(0.5 * (low + high));
+    for _ in 0..64 {
+        let over = share(x) - wanted;
+        (low, high) = if over > 0.0 { (low, x) } else { (x, high) };
+        let slope = 2.0 * (cos - x * sin) * libm::exp(-x * x) * FRAC_1_SQRT_PI;
+        let step = over / slope;
+        let next = x - step;
+        if step.abs() < 1e-8 {
+            break;
+        }
+        x = if next > low && next < high { next } else { 0.5 * (low + high) };
+    }
+    x
 }

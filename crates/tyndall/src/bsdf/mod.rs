@@ -31,7 +31,7 @@ pub use rough_dielectric::RoughDielectric;
 
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
-use microfacet::TrowbridgeReitz;
+use microfacet::{Distribution, Microfacets};
 
 /// Surfaces whose roughness is below this in both directions are perfectly smooth: the lobe would be narrower than
 /// single precision can hold (as pbrt, Pharr et al. 2023, § 9.6).
@@ -120,9 +120,9 @@ impl Bsdf {
     /// `alpha` \[1\] reaches [`SMOOTHEST_ALPHA`]. Without a step of the index it is smooth, and lets all light straight
     /// through.
     pub fn dielectric(eta: f32, alpha_x: f32, alpha_y: f32) -> Self {
-        match TrowbridgeReitz::unless_smooth(alpha_x, alpha_y) {
-            Some(distribution) if (eta - 1.0).abs() >= LEAST_INDEX_STEP => {
-                Self::RoughDielectric(RoughDielectric { interface: Dielectric::new(eta), distribution })
+        match Microfacets::unless_smooth(alpha_x, alpha_y) {
+            Some(microfacets) if (eta - 1.0).abs() >= LEAST_INDEX_STEP => {
+                Self::RoughDielectric(RoughDielectric { interface: Dielectric::new(eta), microfacets })
             }
             _ => Self::Dielectric(Dielectric::new(eta)),
         }
@@ -132,8 +132,8 @@ impl Bsdf {
     /// either `alpha` \[1\] reaches [`SMOOTHEST_ALPHA`].
     pub fn conductor(eta: Lanes, k: Lanes, alpha_x: f32, alpha_y: f32) -> Self {
         let smooth = Conductor { eta, k, reflectance: Lanes::ONE, sides: Sides::Both };
-        match TrowbridgeReitz::unless_smooth(alpha_x, alpha_y) {
-            Some(distribution) => Self::RoughConductor(RoughConductor { metal: smooth, distribution }),
+        match Microfacets::unless_smooth(alpha_x, alpha_y) {
+            Some(microfacets) => Self::RoughConductor(RoughConductor { metal: smooth, microfacets }),
             None => Self::Conductor(smooth),
         }
     }
@@ -159,6 +159,17 @@ impl Bsdf {
             Self::Dielectric(model) => model.tint(reflectance, transmittance),
             Self::RoughDielectric(model) => model.interface.tint(reflectance, transmittance),
             Self::Null => {}
+        }
+        self
+    }
+
+    /// The same model with the slopes of its microfacets, if it has any, after another law.
+    #[must_use]
+    pub fn distributed(mut self, distribution: Distribution) -> Self {
+        match &mut self {
+            Self::RoughConductor(model) => model.microfacets.distribution = distribution,
+            Self::RoughDielectric(model) => model.microfacets.distribution = distribution,
+            Self::Diffuse(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Null => {}
         }
         self
     }

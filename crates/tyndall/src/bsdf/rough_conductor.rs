@@ -1,4 +1,4 @@
-//! A rough metal: Trowbridge–Reitz microfacets, each a small mirror with Fresnel's reflectance.
+//! A rough metal: microfacets, each a small mirror with Fresnel's reflectance.
 //!
 //! ```text
 //! f(o, i) cos θi = F(o·m) D(m) G₂(o, i) / (4 cos θo),   m = (o + i)/|o + i|
@@ -7,10 +7,10 @@
 //! Sampled by the visible normals, so that the weight is `F·G₂/G₁ ≤ 1`. Light that meets a second microfacet is lost, as
 //! in every single-scattering model; the loss grows with roughness.
 //!
-//! Parameters: those of [`Conductor`] and [`TrowbridgeReitz`]. Source: Cook and Torrance 1982; Walter et al. 2007,
+//! Parameters: those of [`Conductor`] and [`Microfacets`]. Source: Cook and Torrance 1982; Walter et al. 2007,
 //! eq. 20.
 
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::Microfacets;
 use super::{BsdfSample, Conductor, ScatterKind, seen_from};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
@@ -21,7 +21,7 @@ pub struct RoughConductor {
     /// What each microfacet is made of.
     pub metal: Conductor,
     /// How the microfacets are turned.
-    pub distribution: TrowbridgeReitz,
+    pub microfacets: Microfacets,
 }
 
 impl RoughConductor {
@@ -34,7 +34,7 @@ impl RoughConductor {
         let (wo, wi) = (seen_from(wo, wo), seen_from(wo, wi));
         let h = wo + wi;
         let length = h.length();
-        let d = self.distribution.density(h / length) * self.distribution.masking_shadowing_over_cos(wo, wi);
+        let d = self.microfacets.density(h / length) * self.microfacets.masking_shadowing_over_cos(wo, wi);
         self.metal.reflected(0.5 * length) * (0.25 * d)
     }
 
@@ -46,7 +46,7 @@ impl RoughConductor {
         }
         let (wo, wi) = (seen_from(wo, wo), seen_from(wo, wi));
         let m = (wo + wi).normalize();
-        self.distribution.density(m) * 0.5 / (wo.z + self.distribution.stretched(wo))
+        self.microfacets.density(m) * 0.5 / (wo.z + self.microfacets.stretched(wo))
     }
 
     /// The mirror image in a visible microfacet; `None` when it points below the surface.
@@ -56,13 +56,13 @@ impl RoughConductor {
             return None;
         }
         let up = seen_from(wo, wo);
-        let m = self.distribution.sample_visible(up, u);
+        let m = self.microfacets.sample_visible(up, u);
         let cos = up.dot(m);
         let wi = 2.0 * cos * m - up;
         (wi.z > 0.0).then(|| BsdfSample {
             wi: seen_from(wo, wi),
-            weight: self.metal.reflected(cos) * self.distribution.shadowing(up, wi),
-            pdf: self.distribution.density(m) * 0.5 / (up.z + self.distribution.stretched(up)),
+            weight: self.metal.reflected(cos) * self.microfacets.shadowing(up, wi),
+            pdf: self.microfacets.density(m) * 0.5 / (up.z + self.microfacets.stretched(up)),
             kind: ScatterKind::Reflection,
             specular: false,
             eta: 1.0,

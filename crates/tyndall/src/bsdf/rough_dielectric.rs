@@ -1,4 +1,4 @@
-//! A rough dielectric: ground glass. Trowbridge–Reitz microfacets, each a small smooth interface.
+//! A rough dielectric: ground glass. Microfacets, each a small smooth interface.
 //!
 //! With `η` the index on the side of `wi` over that on the side of `wo`, `F = F(o·m)`, and `m` on the side of `wo`:
 //!
@@ -11,11 +11,11 @@
 //! carries `1/η²`. Sampled by the visible normals and then by the share of the power, so that the weight is `G₂/G₁` for
 //! reflection and `G₂/(G₁ η²)` for transmission. Light that meets a second microfacet is lost.
 //!
-//! Parameters: those of [`Dielectric`] and [`TrowbridgeReitz`]. Source: Walter et al. 2007, "Microfacet models for
+//! Parameters: those of [`Dielectric`] and [`Microfacets`]. Source: Walter et al. 2007, "Microfacet models for
 //! refraction through rough surfaces", eq. 16 to 21; radiance scaling: Veach 1997, § 5.2.
 
 use super::dielectric::Split;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::Microfacets;
 use super::{BsdfSample, Dielectric, ScatterKind, fresnel, seen_from};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
@@ -26,7 +26,7 @@ pub struct RoughDielectric {
     /// What each microfacet is.
     pub interface: Dielectric,
     /// How the microfacets are turned.
-    pub distribution: TrowbridgeReitz,
+    pub microfacets: Microfacets,
 }
 
 /// The microfacet that takes `wo` to `wi`, seen with `wo` above the surface.
@@ -49,7 +49,7 @@ impl RoughDielectric {
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Lanes {
         let Some(facet) = self.facet(wo, wi) else { return Lanes::ZERO };
         let above = Vec3::new(facet.wi.x, facet.wi.y, facet.wi.z.abs());
-        let d = self.distribution.density(facet.m) * self.distribution.masking_shadowing_over_cos(facet.wo, above);
+        let d = self.microfacets.density(facet.m) * self.microfacets.masking_shadowing_over_cos(facet.wo, above);
         if facet.cos_i > 0.0 {
             facet.split.reflected * (0.25 * d)
         } else {
@@ -62,7 +62,7 @@ impl RoughDielectric {
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         self.facet(wo, wi).map_or(0.0, |facet| {
-            let d = self.distribution.visible_density(facet.wo, facet.m);
+            let d = self.microfacets.visible_density(facet.wo, facet.m);
             if facet.cos_i > 0.0 {
                 facet.split.p_reflect * d / (4.0 * facet.cos_o)
             } else {
@@ -78,17 +78,17 @@ impl RoughDielectric {
             return None;
         }
         let up = seen_from(wo, wo);
-        let m = self.distribution.sample_visible(up, u);
+        let m = self.microfacets.sample_visible(up, u);
         let cos_o = up.dot(m).clamp(0.0, 1.0);
         let eta = self.interface.eta_from(wo);
         let facet = fresnel::dielectric(cos_o, eta);
         let split = self.interface.split(facet.reflectance)?;
-        let d = self.distribution.visible_density(up, m);
+        let d = self.microfacets.visible_density(up, m);
         if u_lobe < split.p_reflect {
             let wi = 2.0 * cos_o * m - up;
             (wi.z > 0.0 && cos_o > 0.0).then(|| BsdfSample {
                 wi: seen_from(wo, wi),
-                weight: split.reflected * (self.distribution.shadowing(up, wi) / split.p_reflect),
+                weight: split.reflected * (self.microfacets.shadowing(up, wi) / split.p_reflect),
                 pdf: split.p_reflect * d / (4.0 * cos_o),
                 kind: ScatterKind::Reflection,
                 specular: false,
@@ -100,7 +100,7 @@ impl RoughDielectric {
             (wi.z < 0.0 && cos_o > 0.0).then(|| BsdfSample {
                 wi: seen_from(wo, wi),
                 weight: split.transmitted
-                    * (self.distribution.shadowing(up, Vec3::new(wi.x, wi.y, -wi.z)) / (p_transmit * eta * eta)),
+                    * (self.microfacets.shadowing(up, Vec3::new(wi.x, wi.y, -wi.z)) / (p_transmit * eta * eta)),
                 pdf: p_transmit * d * refraction_jacobian(cos_o, -facet.cos_t, eta),
                 kind: ScatterKind::Transmission,
                 specular: false,

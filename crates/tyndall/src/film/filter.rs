@@ -61,9 +61,9 @@ fn truncated_gaussian(u: f32, radius: f32, sigma: f32) -> f32 {
     for _ in 0..60 {
         let error = half(x) - target;
         if error > 0.0 {
-            high = x
+            high = x;
         } else {
-            low = x
+            low = x;
         }
         let newton = x - error / density(x);
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };

@@ -15,7 +15,7 @@ use std::{
 use crate::{
     bsdf::Bsdf,
     light::Target,
-    math::{Ray, Vec3},
+    math::{Ray, Vec3, rounding::gamma},
     medium::Inside,
     path::{Vertex, shadow},
     phase::Phase,
@@ -203,7 +203,8 @@ impl<'a> World<'a> {
         let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
             return Some(Point { place: Place::Infinity, inside, distance: f32::INFINITY });
         };
-        let distance = hit.t;
+        // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
+        let distance = hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
         let hit = self.scene.geometry.interaction(&ray, &hit);
         let bsdf = self.scene.material(&hit).bsdf(&self.wavelengths, self.lane);
         let from_outside = omega.dot(hit.ng) < 0.0;
@@ -247,14 +248,19 @@ impl<'a> World<'a> {
         self.sampler.rng.next_positive()
     }
 
-    /// The collision `x′ = x + sω` before `y`.
+    /// The collision `x′ = x + sω` before `y`. One that rounding has carried out of its medium is tallied, and black.
     pub(super) fn collision(&mut self, x: &Point, s: f32, omega: Vec3, y: &Point) -> Point {
-        self.tally.collisions += 1;
-        let place = match y.inside {
-            Inside::Medium { phase, .. } => Place::Collision { p: self.leave(x, omega).0.at(s), phase },
-            Inside::Vacuum => Place::Infinity,
-        };
-        Point { place, inside: y.inside, distance: s }
+        let p = self.leave(x, omega).0.at(s);
+        match y.inside {
+            Inside::Medium { id, phase, .. } if self.scene.may_contain(id, p) => {
+                self.tally.collisions += 1;
+                Point { place: Place::Collision { p, phase }, inside: y.inside, distance: s }
+            }
+            _ => {
+                self.tally.leaks += 1;
+                Point { place: Place::Infinity, inside: Inside::Vacuum, distance: s }
+            }
+        }
     }
 
     /// `emittedRadiance(y, ω)`: of the luminaire at `y`, or of the environment at infinity.

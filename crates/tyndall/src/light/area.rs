@@ -169,7 +169,7 @@ impl AreaLight {
         if self.shape.height(from.p).is_some_and(|h| h == 0.0 || (h < 0.0 && !self.two_sided)) {
             return None;
         }
-        let (point, pdf) = self.sample_point(from, u)?;
+        let (point, pdf) = self.sample_point(from, u);
         let to_light = point.p - from.p;
         let d2 = to_light.length_squared();
         let dir = to_light / d2.sqrt();
@@ -184,26 +184,26 @@ impl AreaLight {
     }
 
     /// A point and its density [1/sr].
-    fn sample_point(&self, from: &Reference, u: Vec2) -> Option<(Point, f32)> {
+    fn sample_point(&self, from: &Reference, u: Vec2) -> (Point, f32) {
         match self.shape {
             EmitterShape::Sphere { centre, radius, inward } if !inward => {
                 let to_centre = centre - from.p;
                 let d2 = to_centre.length_squared();
                 if let Some(cos_max) = cone(d2, radius) {
-                    return Some(sample_cone(centre, radius, to_centre, d2, cos_max, u));
+                    return sample_cone(centre, radius, to_centre, d2, cos_max, u);
                 }
             }
             EmitterShape::Parallelogram { a, e1, e2, ng } if is_rectangle(e1, e2) => {
                 if let Some(rectangle) = SphericalRectangle::new(a, e1, e2, from.p) {
                     let uv = rectangle.sample(u);
-                    return Some((flat(a, e1 * uv.x, e2 * uv.y, ng), rectangle.pdf()));
+                    return (flat(a, e1 * uv.x, e2 * uv.y, ng), rectangle.pdf());
                 }
             }
             _ => {}
         }
         let point = self.shape.sample_area(u);
         let pdf = area_to_solid_angle(from.p, point.p, point.ng, self.shape.area());
-        Some((point, pdf))
+        (point, pdf)
     }
 
     /// Density of [`Self::sample`] at a point with unit normal `ng` [1/sr].

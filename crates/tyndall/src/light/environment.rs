@@ -48,8 +48,8 @@ impl ConstantEnvironment {
 /// How directions lie on an environment image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Projection {
-    /// Latitude and longitude, 2:1, +y up in the map's own space (Mitsuba 3): `u = ½ + atan2(x, −z)/2π`, `v = θ/π`
-    /// from +y.
+    /// Latitude and longitude, 2:1, +y up in the map's own space (Mitsuba 3): `u = atan2(x, −z)/2π` modulo 1,
+    /// `v = θ/π` from +y.
     LatLong,
     /// Equal-area octahedral map of the sphere on a square (Clarberg 2008), +z up in the map's own space (pbrt-v4).
     EqualArea,
@@ -152,8 +152,8 @@ impl EnvironmentMap {
         let d = self.to_world.inverse.transform_vector3(dir).normalize();
         match self.projection {
             Projection::LatLong => {
-                let u = 0.5 + d.x.atan2(-d.z) / (2.0 * PI);
-                Vec2::new(u.clamp(0.0, 1.0), d.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI)
+                let u = d.x.atan2(-d.z) / (2.0 * PI);
+                Vec2::new(u - u.floor(), d.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI)
             }
             Projection::EqualArea => equal_area_square(d),
         }
@@ -165,8 +165,8 @@ impl EnvironmentMap {
             Projection::LatLong => {
                 let (sin_theta, cos_theta) = sin_cos_turn(0.5 * uv.y);
                 let (sin_phi, cos_phi) = sin_cos_turn(uv.x);
-                // u = ½ looks along −z.
-                let d = Vec3::new(-sin_phi * sin_theta, cos_theta, cos_phi * sin_theta);
+                // u = 0 looks along −z.
+                let d = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
                 (d, 2.0 * PI * PI * sin_theta)
             }
             Projection::EqualArea => (equal_area_sphere(uv), 4.0 * PI),

@@ -79,7 +79,7 @@ pub enum Light {
     /// A uniform sky.
     Constant(ConstantEnvironment),
     /// A sky with an image.
-    Map(EnvironmentMap),
+    Map(Box<EnvironmentMap>),
 }
 
 impl Light {

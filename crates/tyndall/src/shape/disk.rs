@@ -18,7 +18,7 @@ pub struct Disk {
     pub a: Vec3,
     /// Half-axis a quarter turn on [length].
     pub b: Vec3,
-    /// Radius of the hole, as a fraction of the outer radius, in `[0, 1)`.
+    /// Radius of the hole over that of the disk, in `[0, 1)` [1].
     pub inner: f32,
     /// Whether the normal is `−a × b`.
     pub reversed: bool,

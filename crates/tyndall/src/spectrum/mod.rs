@@ -247,19 +247,6 @@ mod tests {
     }
 
     #[test]
-    fn ending_the_secondary_wavelengths_keeps_the_mean() {
-        let light = Spectrum::blackbody(4000.0);
-        let n = 8_000;
-        let mut sum = [0.0; 3];
-        for i in 0..n {
-            let w = Wavelengths::sample(ColorMode::Spectral, (i as f32 + 0.5) / n as f32).hero_only();
-            let rgb = film_rgb(light.eval(&w), &w);
-            sum = std::array::from_fn(|c| sum[c] + rgb[c] / n as f32);
-        }
-        assert_near(sum, light.rgb(), 1e-3, "hero only");
-    }
-
-    #[test]
     fn mono_mode_is_the_luminance_of_rgb_mode() {
         let s = Spectrum::illuminant_rgb([2.0, 1.0, 0.5]);
         let y = 0.2126 * 2.0 + 0.7152 + 0.0722 * 0.5;

@@ -56,31 +56,12 @@ impl Wavelengths {
         }
     }
 
-    /// Ends the secondary wavelengths, as a dispersive boundary must: from here on the path is the hero's alone.
-    ///
-    /// The other three densities become 0, and the hero's a quarter of what it was, because the film still takes the
-    /// mean over four lanes. Doing it twice is doing it once. Averages over the lanes that path weights take (spectral
-    /// MIS) must then use the hero's lane only.
-    #[must_use]
-    pub fn hero_only(self) -> Self {
+    /// The wavelength [nm] at which a dispersive index is evaluated: that of lane `hero`, or outside of spectral mode
+    /// the helium d line, 587.56 nm, for which indices of glass are quoted.
+    #[inline]
+    pub fn hero(&self, hero: usize) -> f32 {
         match self {
-            Self::Spectral { lambda, pdf } if !self.is_hero_only() => {
-                Self::Spectral { lambda, pdf: [0.25 * pdf[0], 0.0, 0.0, 0.0] }
-            }
-            other => other,
-        }
-    }
-
-    /// Whether the secondary wavelengths have ended.
-    pub fn is_hero_only(&self) -> bool {
-        matches!(self, Self::Spectral { pdf, .. } if pdf[1..] == [0.0; 3])
-    }
-
-    /// The wavelength [nm] at which a dispersive index is evaluated: the hero's, or outside of spectral mode the
-    /// helium d line, 587.56 nm, for which indices of glass are quoted.
-    pub fn hero(&self) -> f32 {
-        match self {
-            Self::Spectral { lambda, .. } => lambda[0],
+            Self::Spectral { lambda, .. } => lambda[hero],
             Self::Rgb | Self::Mono => 587.56,
         }
     }
@@ -129,14 +110,5 @@ mod tests {
         for (l, exact) in lambda.into_iter().zip([479.154_1, 545.903_0, 616.856_2, 360.0]) {
             assert!((l - exact).abs() < 0.02, "{l} {exact}");
         }
-    }
-
-    #[test]
-    fn only_spectral_wavelengths_end() {
-        assert_eq!(Wavelengths::Rgb.hero_only(), Wavelengths::Rgb);
-        let w = Wavelengths::sample(ColorMode::Spectral, 0.6);
-        assert!(!w.is_hero_only() && w.hero_only().is_hero_only());
-        assert_eq!(w.hero_only().hero_only(), w.hero_only());
-        assert_eq!(w.hero_only().hero(), w.hero());
     }
 }

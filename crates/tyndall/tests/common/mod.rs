@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test file uses its own part
 
 use tyndall::{
-    bsdf::Sides,
+    bsdf::{Sides, microfacet::Distribution},
     camera::Camera,
     film::Filter,
     integrator::Integrator,
@@ -20,47 +20,48 @@ use tyndall::{
 
 /// A mean of independent samples in the film's red, green and blue, with its standard error.
 #[derive(Debug, Clone, Copy)]
-pub struct Measured {
-    pub mean: [f64; 3],
-    pub standard_error: [f64; 3],
+pub(crate) struct Measured {
+    pub(crate) mean: [f64; 3],
+    pub(crate) standard_error: [f64; 3],
 }
 
 /// A world in the making.
-pub struct World {
-    pub color: ColorMode,
-    pub camera: Camera,
-    pub builder: GeometryBuilder,
-    pub objects: Vec<Object>,
-    pub materials: Vec<Material>,
-    pub media: Vec<Homogeneous>,
-    pub lights: Vec<Light>,
+pub(crate) struct World {
+    pub(crate) color: ColorMode,
+    pub(crate) camera: Camera,
+    pub(crate) builder: GeometryBuilder,
+    pub(crate) objects: Vec<Object>,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) media: Vec<Homogeneous>,
+    pub(crate) lights: Vec<Light>,
 }
 
-pub fn grey(v: f32) -> Spectrum {
+pub(crate) fn grey(v: f32) -> Spectrum {
     Spectrum::constant(v)
 }
 
-pub fn diffuse(reflectance: f32) -> Material {
+pub(crate) fn diffuse(reflectance: f32) -> Material {
     Material::Diffuse { reflectance: grey(reflectance), sides: Sides::Both }
 }
 
-pub fn glass(eta: f32, alpha: f32) -> Material {
+pub(crate) fn glass(eta: f32, alpha: f32) -> Material {
     Material::Dielectric {
         eta: Index::Constant(eta),
         alpha: [alpha; 2],
+        distribution: Distribution::TrowbridgeReitz,
         reflection_tint: grey(1.0),
         transmission_tint: grey(1.0),
     }
 }
 
-pub fn medium(sigma_a: [f32; 3], sigma_s: [f32; 3], g: f32) -> Homogeneous {
+pub(crate) fn medium(sigma_a: [f32; 3], sigma_s: [f32; 3], g: f32) -> Homogeneous {
     let phase = if g == 0.0 { Phase::Isotropic(Isotropic) } else { Phase::henyey_greenstein(g).unwrap() };
     Homogeneous { sigma_a: Spectrum::unbounded_rgb(sigma_a), sigma_s: Spectrum::unbounded_rgb(sigma_s), phase }
 }
 
 impl World {
     /// One pixel that looks from `eye` at `target`; the pixel is so narrow that it is one ray.
-    pub fn seen(eye: Vec3, target: Vec3) -> Self {
+    pub(crate) fn seen(eye: Vec3, target: Vec3) -> Self {
         let forward = (target - eye).normalize();
         let side = if forward.y.abs() > 0.9 { Vec3::X } else { Vec3::Y };
         let x = side.cross(forward).normalize();
@@ -108,14 +109,20 @@ impl World {
         })
     }
 
-    pub fn sphere(&mut self, centre: Vec3, radius: f32, material: Material, inside: Option<Homogeneous>) -> ObjectId {
+    pub(crate) fn sphere(
+        &mut self,
+        centre: Vec3,
+        radius: f32,
+        material: Material,
+        inside: Option<Homogeneous>,
+    ) -> ObjectId {
         let interface = self.filled(inside);
         self.object(material, interface);
         self.builder.add_sphere(Sphere::new(centre, radius), &Transform::IDENTITY, false).unwrap()
     }
 
     /// The box `min ≤ p ≤ max`.
-    pub fn cuboid(&mut self, min: Vec3, max: Vec3, material: Material, inside: Option<Homogeneous>) -> ObjectId {
+    pub(crate) fn cuboid(&mut self, min: Vec3, max: Vec3, material: Material, inside: Option<Homogeneous>) -> ObjectId {
         let interface = self.filled(inside);
         self.object(material, interface);
         let corner = |i: usize| {
@@ -150,20 +157,20 @@ impl World {
     }
 
     /// A wide plane slab between y = −thickness and y = 0.
-    pub fn slab(&mut self, thickness: f32, material: Material, inside: Homogeneous) {
+    pub(crate) fn slab(&mut self, thickness: f32, material: Material, inside: Homogeneous) {
         let wide = 1e4 * thickness.max(1.0);
         self.cuboid(Vec3::new(-wide, -thickness, -wide), Vec3::new(wide, 0.0, wide), material, Some(inside));
     }
 
     /// A sphere whose surface shines, inwards or outwards.
-    pub fn shining_sphere(&mut self, centre: Vec3, radius: f32, material: Material, le: f32, inward: bool) {
+    pub(crate) fn shining_sphere(&mut self, centre: Vec3, radius: f32, material: Material, le: f32, inward: bool) {
         self.object(material, None);
         self.builder.add_sphere(Sphere::new(centre, radius), &Transform::IDENTITY, inward).unwrap();
         self.shine(EmitterShape::Sphere { centre, radius, inward }, le);
     }
 
     /// A disk of given radius at height y that shines downwards.
-    pub fn shining_disk(&mut self, y: f32, radius: f32, material: Material, le: f32) {
+    pub(crate) fn shining_disk(&mut self, y: f32, radius: f32, material: Material, le: f32) {
         self.object(material, None);
         let down = glam::DMat4::from_translation(glam::DVec3::new(0.0, f64::from(y), 0.0))
             * glam::DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2);
@@ -179,19 +186,19 @@ impl World {
     }
 
     /// The same radiance from everywhere.
-    pub fn sky(&mut self, le: f32) {
+    pub(crate) fn sky(&mut self, le: f32) {
         self.lights
             .push(Light::Constant(ConstantEnvironment { radiance: Spectrum::illuminant_rgb([le; 3]), luminance: le }));
     }
 
     /// Radiance `above` from all directions with y > 0 and `below` from the others.
-    pub fn half_sky(&mut self, above: f32, below: f32) {
+    pub(crate) fn half_sky(&mut self, above: f32, below: f32) {
         let pixels = [[above; 3], [above; 3], [below; 3], [below; 3]];
         let map = EnvironmentMap::new(Transform::IDENTITY, Projection::LatLong, 1, 4, &pixels, 1.0).unwrap();
-        self.lights.push(Light::Map(map));
+        self.lights.push(Light::Map(Box::new(map)));
     }
 
-    pub fn scene(self) -> Scene {
+    pub(crate) fn scene(self) -> Scene {
         let table = LightTable::new(self.lights, Vec3::ZERO);
         Scene::new(
             self.color,
@@ -205,12 +212,12 @@ impl World {
     }
 
     /// The radiance along the one ray, from independent samples.
-    pub fn measure(self, integrator: &dyn Integrator, spp: u32) -> Measured {
+    pub(crate) fn measure(self, integrator: &dyn Integrator, spp: u32) -> Measured {
         measure(&self.scene(), integrator, spp)
     }
 }
 
-pub fn measure(scene: &Scene, integrator: &dyn Integrator, spp: u32) -> Measured {
+pub(crate) fn measure(scene: &Scene, integrator: &dyn Integrator, spp: u32) -> Measured {
     let settings = Settings { spp, seed: 1, sampler: SamplerKind::Independent, ..Settings::default() };
     let rendering = render(scene, integrator, &settings, &());
     assert_eq!(rendering.tally.bad_samples, 0, "{:?}", rendering.tally.bad_sample_list);
@@ -225,21 +232,21 @@ pub fn measure(scene: &Scene, integrator: &dyn Integrator, spp: u32) -> Measured
 /// Fails when a channel is more than 4.5 standard errors (one in 150,000) from what it should be, or when the
 /// measurement is too blunt to tell: a standard error above `precision` of the expectation.
 #[track_caller]
-pub fn assert_mean(what: &str, m: &Measured, expected: [f64; 3], precision: f64) {
-    for c in 0..3 {
-        let z = (m.mean[c] - expected[c]) / m.standard_error[c].max(1e-6 * expected[c].abs() + 1e-12);
+pub(crate) fn assert_mean(what: &str, m: &Measured, expected: [f64; 3], precision: f64) {
+    for (c, expected) in expected.into_iter().enumerate() {
+        let z = (m.mean[c] - expected) / m.standard_error[c].max(1e-6 * expected.abs() + 1e-12);
         assert!(
             z.abs() < 4.5,
             "{what}, channel {c}: mean {:.6} ± {:.6}, expected {:.6} (z = {z:.1})",
             m.mean[c],
             m.standard_error[c],
-            expected[c]
+            expected
         );
         assert!(
-            m.standard_error[c] <= precision * expected[c].abs(),
+            m.standard_error[c] <= precision * expected.abs(),
             "{what}, channel {c}: standard error {:.2e} is above {precision} of {:.6}",
             m.standard_error[c],
-            expected[c]
+            expected
         );
     }
 }

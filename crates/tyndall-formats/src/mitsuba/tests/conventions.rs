@@ -1,3 +1,5 @@
+//! Conventions of Mitsuba 3: transforms, cameras, defaults.
+
 use glam::{DMat4, DVec3};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Faulty scenes and the words that tell it.
+
 use proptest::prelude::*;
 
 use super::*;

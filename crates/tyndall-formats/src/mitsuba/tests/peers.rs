@@ -1,3 +1,5 @@
+//! The scenes that peers are compared on.
+
 use glam::DVec3;
 
 use super::*;

@@ -12,7 +12,7 @@
 //!
 //! So boxes must hold the displaced triangles (compare Ize 2013): every box is padded by `16u` of its longest side
 //! when the tree is built ([`Node::PAD`]), and the distances to its planes are shortened and lengthened by `12u` when
-//! it is met ([`traverse::SLACK`]): `4u` for the displacement, `4u` for the rounding of the distances themselves, and
+//! it is met (`traverse::SLACK`): `4u` for the displacement, `4u` for the rounding of the distances themselves, and
 //! the rest because the plane's distance from the origin is that of the padded box.
 
 pub(super) mod build;
