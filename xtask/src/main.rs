@@ -34,10 +34,7 @@ enum Chore {
     /// tyndall against Mitsuba 3, and RGB against spectral colour: agreement and efficiency
     Peers(peers::Options),
     /// The figures that tyndall promises, measured on this machine
-    Bench {
-        #[command(subcommand)]
-        bench: Option<bench::Bench>,
-    },
+    Bench(bench::Options),
     /// All that is known to be worth checking: ci, the slow tests, peers, bench
     Full,
 }
@@ -57,12 +54,12 @@ fn run(chore: Chore) -> anyhow::Result<()> {
         Chore::Ci => ci::run(),
         Chore::Tidy => tidy::run(),
         Chore::Peers(options) => peers::run(&options),
-        Chore::Bench { bench } => bench::run(bench),
+        Chore::Bench(options) => bench::run(&options),
         Chore::Full => {
             ci::run()?;
             ci::run_slow_tests()?;
             peers::run(&peers::Options::default())?;
-            bench::run(None)
+            bench::run(&bench::Options::default())
         }
     }
 }

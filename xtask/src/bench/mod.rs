@@ -1,15 +1,26 @@
 //! `cargo xtask bench`: the figures that tyndall promises, measured on this machine, peers in the same minutes.
 
 mod rays;
+mod roulette;
 mod scenes;
 mod startup;
 mod threads;
 
 use anyhow::Result;
-use clap::Subcommand;
+use clap::{Args, Subcommand};
 
 use crate::peers::tyndall::Tyndall;
 use crate::shell::root;
+
+/// What to measure and how long.
+#[derive(Debug, Default, Args)]
+pub(crate) struct Options {
+    #[command(subcommand)]
+    bench: Option<Bench>,
+    /// Few repetitions: shows that a bench works, its figures are rough
+    #[arg(long, global = true)]
+    quick: bool,
+}
 
 /// What to measure; everything if nothing is named.
 #[derive(Debug, Clone, Copy, Subcommand)]
@@ -22,20 +33,28 @@ pub(crate) enum Bench {
     Startup,
     /// How much faster two threads are than one (at least 1.9 times)
     Threads,
+    /// MSE · N against N: our roulette keeps the variance finite where Mitsuba's does not
+    Roulette,
 }
 
 /// Measures and prints; whether a target is met is said, but a missed one is no failure: machines differ.
-pub(crate) fn run(bench: Option<Bench>) -> Result<()> {
+pub(crate) fn run(options: &Options) -> Result<()> {
     std::fs::create_dir_all(root().join("target/bench"))?;
     println!("machine: {}", machine());
+    let all = [Bench::Startup, Bench::Threads, Bench::Rays, Bench::Scenes, Bench::Roulette];
+    match options.bench {
+        Some(bench) => run_one(bench, options.quick),
+        None => all.into_iter().try_for_each(|bench| run_one(bench, options.quick)),
+    }
+}
+
+fn run_one(bench: Bench, quick: bool) -> Result<()> {
     match bench {
-        Some(Bench::Rays) => rays::run(),
-        Some(Bench::Scenes) => scenes::run(&Tyndall::build()?),
-        Some(Bench::Startup) => startup::run(&Tyndall::build()?),
-        Some(Bench::Threads) => threads::run(&Tyndall::build()?),
-        None => {
-            [Bench::Startup, Bench::Threads, Bench::Rays, Bench::Scenes].into_iter().try_for_each(|one| run(Some(one)))
-        }
+        Bench::Rays => rays::run(),
+        Bench::Scenes => scenes::run(&Tyndall::find()?, if quick { 2 } else { 5 }),
+        Bench::Startup => startup::run(&Tyndall::find()?, if quick { 5 } else { 20 }),
+        Bench::Threads => threads::run(&Tyndall::find()?, if quick { 2 } else { 5 }),
+        Bench::Roulette => roulette::run(&Tyndall::find()?, if quick { 4.0 } else { 60.0 }),
     }
 }
 

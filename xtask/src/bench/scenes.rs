@@ -10,25 +10,24 @@ use crate::peers::tyndall::Tyndall;
 use crate::peers::{directory, scene_file};
 
 const SCENES: [&str; 2] = ["g_cornell", "d_fog_box"];
-const TURNS: u32 = 5;
 const RUNS_IN_A_TURN: u32 = 2;
 const TARGET: f64 = 1.5;
 
 /// Measures and prints.
-pub(super) fn run(tyndall: &Tyndall) -> Result<()> {
+pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
     let mitsuba = Mitsuba::install()?;
     for duel in duels().iter().filter(|duel| SCENES.contains(&duel.scene)) {
-        race(duel, &mitsuba, tyndall)?;
+        race(duel, turns, &mitsuba, tyndall)?;
     }
     Ok(())
 }
 
-fn race(duel: &Duel, mitsuba: &Mitsuba, tyndall: &Tyndall) -> Result<()> {
+fn race(duel: &Duel, turns: u32, mitsuba: &Mitsuba, tyndall: &Tyndall) -> Result<()> {
     let rivals = [Variant::Scalar, Variant::Llvm].map(|variant| Duel { variant, ..duel.clone() });
     let directory = directory(duel.scene)?;
     let mut ours: Vec<Runs> = Vec::new();
     let mut theirs: [Vec<Runs>; 2] = [Vec::new(), Vec::new()];
-    for turn in Turn::all(TURNS, RUNS_IN_A_TURN) {
+    for turn in Turn::all(turns, RUNS_IN_A_TURN) {
         for (rival, runs) in rivals.iter().zip(&mut theirs) {
             runs.push(mitsuba.render(rival, turn, &directory, false)?);
         }

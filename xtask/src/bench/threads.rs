@@ -11,11 +11,10 @@ use crate::peers::tyndall::Tyndall;
 use crate::shell::{output, root};
 
 const SPP: u32 = 256;
-const TURNS: usize = 5;
 const TARGET: f64 = 1.9;
 
 /// Measures and prints.
-pub(super) fn run(tyndall: &Tyndall) -> Result<()> {
+pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
     let image = root().join("target/bench/threads.exr");
     let wall_seconds = |threads: &str| -> Result<f64> {
         let begun = Instant::now();
@@ -23,10 +22,10 @@ pub(super) fn run(tyndall: &Tyndall) -> Result<()> {
         Ok(begun.elapsed().as_secs_f64())
     };
     let mut ratios = Vec::new();
-    for _ in 0..TURNS {
+    for _ in 0..turns {
         ratios.push(wall_seconds("1")? / wall_seconds("2")?);
     }
     let ratio = median(&ratios);
-    judge("two threads over one, Cornell box, median of 5 turns", ratio, "×", ratio >= TARGET, "1.9×");
+    judge(&format!("two threads over one, Cornell box, median of {turns} turns"), ratio, "×", ratio >= TARGET, "1.9×");
     Ok(())
 }

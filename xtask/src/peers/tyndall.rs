@@ -9,15 +9,20 @@ use super::image::Image;
 use super::runs::{Runs, Turn};
 use crate::shell::{cargo, output, root, tee};
 
-/// The binary `tyndall`, built.
+/// The binary `tyndall`.
 #[derive(Debug)]
 pub(crate) struct Tyndall {
     binary: PathBuf,
 }
 
 impl Tyndall {
-    /// Builds the release binary.
-    pub(crate) fn build() -> Result<Self> {
+    /// The binary that the environment variable `TYNDALL` names, so that any build can be measured; else builds the
+    /// release binary.
+    pub(crate) fn find() -> Result<Self> {
+        if let Some(binary) = std::env::var_os("TYNDALL") {
+            let binary = PathBuf::from(binary).canonicalize().context("TYNDALL names no file")?;
+            return Ok(Self { binary });
+        }
         tee(&mut cargo("build --release --package tyndall-cli"))?;
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
         Ok(Self { binary: target.join("release/tyndall") })
