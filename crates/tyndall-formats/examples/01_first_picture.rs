@@ -25,7 +25,13 @@ use tyndall_formats::{
     load,
 };
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() {
+    if let Err(fault) = run() {
+        println!("{fault}");
+    }
+}
+
+fn run() -> Result<(), Box<dyn std::error::Error>> {
     let scene_file = args().nth(1).ok_or("name a scene and a picture")?;
     let picture = args().nth(2).ok_or("name a picture too, in .png")?;
 

@@ -38,15 +38,8 @@ fn ball(albedo: f32) -> Result<Scene, Box<dyn std::error::Error>> {
     let interface = Some(MediumInterface { inside: Some(MediumId(0)), outside: None });
     let object = Object { name: "ball".into(), material: MaterialId(0), interface, emission: Emission::None };
     let window = [-0.001, 0.001, -0.001, 0.001]; // looks along +z, so narrowly that it is one ray
-    let camera = Camera {
-        to_world: Transform::IDENTITY,
-        window,
-        width: 1,
-        height: 1,
-        filter: Filter::default(),
-        exposure: 1.0,
-        medium: None,
-    };
+    let (to_world, filter) = (Transform::IDENTITY, Filter::default());
+    let camera = Camera { to_world, window, width: 1, height: 1, filter, exposure: 1.0, medium: None };
     let sky = Light::Constant(ConstantEnvironment { radiance: Spectrum::illuminant_rgb([1.0; 3]), luminance: 1.0 });
     let lights = LightTable::new(vec![sky], Vec3::ZERO);
     Ok(Scene::new(ColorMode::Rgb, camera, builder.build()?, vec![object], vec![Material::Null], vec![medium], lights))

@@ -11,7 +11,6 @@
 //! ```text
 //! A = 1/π ∫ V(ω) cos θ dω  ≈  V(ω),   ω drawn with density cos θ / π
 //! ```
-#![allow(clippy::print_stdout)] // an example talks
 
 use std::{env::args, path::Path};
 
@@ -24,7 +23,11 @@ use tyndall::{
     spectrum::{ColorMode, Lanes, Wavelengths},
     tally::Tally,
 };
-use tyndall_formats::film::{Curve, Image, Metadata, Tone, png};
+use tyndall_formats::{
+    build::build,
+    film::{Curve, Image, Metadata, Tone, png},
+    load,
+};
 
 /// Ambient occlusion up to a distance [length].
 #[derive(Debug)]
@@ -47,15 +50,11 @@ impl Integrator for Occlusion {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let scene_file = args().nth(1).ok_or("name a scene and a picture")?;
-    let picture = args().nth(2).ok_or("name a picture too, in .png")?;
-    let (desc, sources) = tyndall_formats::load(Path::new(&scene_file), &[]).map_err(|faults| faults.render(true))?;
-    let (scene, _) =
-        tyndall_formats::build::build(&desc, sources, ColorMode::Mono).map_err(|faults| faults.render(true))?;
+    let [scene_file, picture] = [1, 2].map(|i| args().nth(i).unwrap_or_default());
+    let (desc, sources) = load(Path::new(&scene_file), &[]).map_err(|faults| faults.render(false))?;
+    let (scene, _) = build(&desc, sources, ColorMode::Mono).map_err(|faults| faults.render(false))?;
     let settings = Settings { spp: 64, ..Settings::default() };
     let rendering = render(&scene, &Occlusion { reach: 1.0 }, &settings, &());
     let image = Image::of(&rendering.film, Metadata::default());
-    png::write(Path::new(&picture), &image, Tone { exposure: 0.0, curve: Curve::Srgb })?;
-    println!("{picture}: {} camera rays, {} occlusion rays", rendering.tally.rays, rendering.tally.shadow_rays);
-    Ok(())
+    Ok(png::write(Path::new(&picture), &image, Tone { exposure: 0.0, curve: Curve::Srgb })?)
 }
