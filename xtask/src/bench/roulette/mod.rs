@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use crate::peers::image::Image;
 use crate::peers::mitsuba::Mitsuba;
+use crate::peers::report::figure;
 use crate::peers::runs::{Runs, Turn};
 use crate::peers::settings::{Duel, Variant};
 use crate::peers::tyndall::Tyndall;
@@ -195,7 +196,7 @@ fn table(panel: &Panel) -> String {
         for course in &panel.courses {
             let cells = course.levels.get(row).map_or("   |   |".to_owned(), |level| {
                 let ((mse_n, mse_n_error), (mean, mean_error)) = (level.mse_n, level.mean);
-                format!(" {mse_n:.3} ± {mse_n_error:.3} | {mean:.4} ± {mean_error:.4} |")
+                format!(" {} ± {} | {mean:.4} ± {mean_error:.4} |", figure(mse_n), figure(mse_n_error))
             });
             text += &cells;
         }
@@ -231,9 +232,9 @@ mod tests {
 
     #[test]
     fn the_table_has_a_row_for_each_n_and_gaps_where_a_side_ran_out_of_time() {
-        let level = Level { spp: 1, mse_n: (0.5, 0.1), mean: (1.0, 0.01), cpu_seconds: 1.0 };
+        let level = Level { spp: 1, mse_n: (0.5, 0.125), mean: (1.0, 0.01), cpu_seconds: 1.0 };
         let course = |levels: usize| Course { side: SIDES[0], levels: vec![level.clone(); levels] };
         let text = table(&Panel { cube: CUBES[0], courses: vec![course(1), course(2)] });
-        assert!(text.ends_with("| 2 |   |   | 0.500 ± 0.100 | 1.0000 ± 0.0100 |\n"), "{text}");
+        assert!(text.ends_with("| 2 |   |   | 0.500 ± 0.125 | 1.0000 ± 0.0100 |\n"), "{text}");
     }
 }
