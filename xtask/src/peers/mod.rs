@@ -9,7 +9,7 @@
 
 pub(crate) mod image;
 pub(crate) mod mitsuba;
-mod report;
+pub(crate) mod report;
 pub(crate) mod runs;
 pub(crate) mod settings;
 pub(crate) mod statistics;
@@ -68,7 +68,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     for duel in settings::duels().into_iter().filter(|duel| duel.scene.contains(&options.filter)) {
         eprintln!("━━ peers: {}", duel.scene);
         match fight(&duel, options, &mitsuba, tyndall.as_ref()) {
-            Ok(row) => duels.push(row),
+            Ok(row) => {
+                eprintln!("{}", row.told());
+                duels.push(row);
+            }
             Err(error) => keep(duel.scene, error),
         }
     }
@@ -77,7 +80,10 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         for scene in pbrt_scenes(&options.filter)? {
             eprintln!("━━ peers: {}", scene.display());
             match compare_colours(&scene, options, tyndall) {
-                Ok(row) => colours.push(row),
+                Ok(row) => {
+                    eprintln!("{}", row.told());
+                    colours.push(row);
+                }
                 Err(error) => keep(&scene.display().to_string(), error),
             }
         }

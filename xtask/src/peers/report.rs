@@ -30,6 +30,20 @@ impl DuelRow {
         self.agreement.tests > 0 && self.agreement.p() < level
     }
 
+    /// One line for those who wait for the next scene.
+    pub(crate) fn told(&self) -> String {
+        let Self { scene, agreement, efficiency_ratio, tyndall, mitsuba, .. } = self;
+        let cpu_seconds = |side: &Side| figure(super::statistics::median(&side.cpu_seconds));
+        format!(
+            "{scene}: p {:.1e}, means {}; {} and {} CPU s a run, efficiency {} times Mitsuba's",
+            agreement.p(),
+            ratios(&agreement.ratio),
+            cpu_seconds(tyndall),
+            cpu_seconds(mitsuba),
+            figure(*efficiency_ratio)
+        )
+    }
+
     fn verdict(&self, level: f64) -> &'static str {
         match () {
             () if self.agreement.tests == 0 => "both black: nothing compared",
@@ -50,6 +64,14 @@ pub(crate) struct ColourRow {
     pub(crate) rgb: Side,
     /// With hero wavelengths
     pub(crate) spectral: Side,
+}
+
+impl ColourRow {
+    /// One line for those who wait for the next scene.
+    pub(crate) fn told(&self) -> String {
+        let (ratio, error) = self.agreement.ratio[0];
+        format!("{}: RGB has {ratio:.4} ± {error:.4} of the luminance of spectral colour", self.scene)
+    }
 }
 
 /// Both tables.
@@ -116,7 +138,7 @@ fn ratios(channels: &[(f64, f64); 3]) -> String {
 }
 
 /// Three digits, whatever the size.
-fn figure(value: f64) -> String {
+pub(crate) fn figure(value: f64) -> String {
     match value.abs() {
         size if !size.is_finite() => "–".to_owned(),
         size if size >= 100.0 => format!("{value:.0}"),

@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use crate::peers::image::Image;
 use crate::peers::mitsuba::Mitsuba;
+use crate::peers::report::figure;
 use crate::peers::runs::{Runs, Turn};
 use crate::peers::settings::{Duel, Variant};
 use crate::peers::tyndall::Tyndall;
@@ -24,8 +25,6 @@ use crate::shell::root;
 
 /// Independent runs for each N.
 const RUNS: u32 = 8;
-/// The pictures are small: each pixel is an experiment of its own, and there are enough of them.
-const SIZE: &str = "res=32";
 
 /// A scene and, where it is known, the value of every pixel.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -48,6 +47,7 @@ struct Side {
     mitsuba: Option<&'static str>,
 }
 
+/// The pictures are small: each pixel is an experiment of its own, and there are enough of them.
 const SIDES: [Side; 3] = [
     Side { name: "tyndall", mitsuba: None },
     Side { name: "Mitsuba, default roulette", mitsuba: Some("integrator=volpathmis rr_depth=5 res=32") },
@@ -127,17 +127,13 @@ fn render(
     mitsuba: &Mitsuba,
     tyndall: &Tyndall,
 ) -> Result<Runs> {
-    match side.mitsuba {
-        Some(parameters) => {
-            let duel =
-                Duel { scene: cube.scene, variant: Variant::Scalar, parameters, mitsuba_spp: spp, tyndall_spp: spp };
-            mitsuba.render(&duel, turn, directory, false)
-        }
+    if let Some(parameters) = side.mitsuba {
+        let duel = Duel { scene: cube.scene, variant: Variant::Scalar, parameters, mitsuba_spp: spp, tyndall_spp: spp };
+        mitsuba.render(&duel, turn, directory, false)
+    } else {
         // Stratified samples converge faster than 1/N: independent ones let roulette alone be seen.
-        None => {
-            let extra = ["--sampler", "independent", "-D", SIZE];
-            tyndall.render(&scene_file(cube.scene), spp, turn, &directory.join("run"), &extra)
-        }
+        let extra = ["--sampler", "independent", "-D", "res=32"];
+        tyndall.render(&scene_file(cube.scene), spp, turn, &directory.join("run"), &extra)
     }
 }
 
@@ -162,8 +158,8 @@ impl Level {
         let means = images.iter().map(|image| mean(image.iter().copied()));
         Self {
             spp,
-            mse_n: with_standard_error(mse_n.collect()),
-            mean: with_standard_error(means.collect()),
+            mse_n: with_standard_error(&mse_n.collect::<Vec<_>>()),
+            mean: with_standard_error(&means.collect::<Vec<_>>()),
             cpu_seconds: runs.cpu_seconds,
         }
     }
@@ -175,7 +171,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 /// Mean and its standard error, from the spread.
-fn with_standard_error(values: Vec<f64>) -> (f64, f64) {
+fn with_standard_error(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let middle = values.iter().sum::<f64>() / count;
     let squares = values.iter().map(|value| (value - middle).powi(2)).sum::<f64>();
@@ -188,14 +184,14 @@ fn table(panel: &Panel) -> String {
     for course in &panel.courses {
         let _ = write!(text, " {} | mean |", course.side.name);
     }
-    text += &format!("\n|--:|{}\n", "--:|--:|".repeat(panel.courses.len()));
+    let _ = write!(text, "\n|--:|{}\n", "--:|--:|".repeat(panel.courses.len()));
     let longest = panel.courses.iter().map(|course| course.levels.len()).max().unwrap_or(0);
     for row in 0..longest {
         let _ = write!(text, "| {} |", 1 << row);
         for course in &panel.courses {
             let cells = course.levels.get(row).map_or("   |   |".to_owned(), |level| {
                 let ((mse_n, mse_n_error), (mean, mean_error)) = (level.mse_n, level.mean);
-                format!(" {mse_n:.3} ± {mse_n_error:.3} | {mean:.4} ± {mean_error:.4} |")
+                format!(" {} ± {} | {mean:.4} ± {mean_error:.4} |", figure(mse_n), figure(mse_n_error))
             });
             text += &cells;
         }
@@ -231,9 +227,9 @@ mod tests {
 
     #[test]
     fn the_table_has_a_row_for_each_n_and_gaps_where_a_side_ran_out_of_time() {
-        let level = Level { spp: 1, mse_n: (0.5, 0.1), mean: (1.0, 0.01), cpu_seconds: 1.0 };
+        let level = Level { spp: 1, mse_n: (0.5, 0.125), mean: (1.0, 0.01), cpu_seconds: 1.0 };
         let course = |levels: usize| Course { side: SIDES[0], levels: vec![level.clone(); levels] };
         let text = table(&Panel { cube: CUBES[0], courses: vec![course(1), course(2)] });
-        assert!(text.ends_with("| 2 |   |   | 0.500 ± 0.100 | 1.0000 ± 0.0100 |\n"), "{text}");
+        assert!(text.ends_with("| 2 |   |   | 0.500 ± 0.125 | 1.0000 ± 0.0100 |\n"), "{text}");
     }
 }
