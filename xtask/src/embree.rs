@@ -47,7 +47,7 @@ struct RayHit {
 /// One mesh in an Embree scene with the robust flag.
 #[derive(Debug)]
 pub(crate) struct Scene {
-    scene: Handle,
+    handle: Handle,
     intersect: unsafe extern "C" fn(Handle, *mut RayHit, *mut c_void),
     _library: Library, // must outlive the handles
 }
@@ -69,14 +69,14 @@ impl Scene {
             ensure!(!device.is_null(), "Embree has no device");
             let (scene, geometry) = (new_scene(device), new_geometry(device, GEOMETRY_TRIANGLE));
             set_flags(scene, SCENE_FLAG_ROBUST);
-            let vertices: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
+            let vertices: Vec<[f32; 3]> = mesh.positions.iter().map(glam::Vec3::to_array).collect();
             fill(&library, geometry, BUFFER_VERTEX, FORMAT_FLOAT3, &vertices)?;
             fill(&library, geometry, BUFFER_INDEX, FORMAT_UINT3, &mesh.indices)?;
             commit_geometry(geometry);
             attach(scene, geometry);
             commit_scene(scene);
             let intersect = *library.get(b"rtcIntersect1")?;
-            Ok(Self { scene, intersect, _library: library })
+            Ok(Self { handle: scene, intersect, _library: library })
         }
     }
 
@@ -99,7 +99,7 @@ impl Scene {
             instance: [INVALID; 2],
         };
         // SAFETY: see the head of this module.
-        unsafe { (self.intersect)(self.scene, &raw mut query, ptr::null_mut()) };
+        unsafe { (self.intersect)(self.handle, &raw mut query, ptr::null_mut()) };
         (query.geometry != INVALID).then_some(query.far)
     }
 }

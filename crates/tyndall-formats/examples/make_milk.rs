@@ -60,20 +60,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// A polygon whose corners are rounded by arcs, each point with its exact normal, to the right of the way.
 fn rounded(corners: &[(DVec2, f64)]) -> Vec<ProfilePoint> {
     let right = |way: DVec2| DVec2::new(way.y, -way.x);
-    let way = |i: usize| (corners[i + 1].0 - corners[i].0).normalize();
     let last = corners.len() - 1;
-    let mut profile = vec![(corners[0].0, right(way(0)))];
-    for i in 1..last {
-        let (before, after, radius) = (right(way(i - 1)), right(way(i)), corners[i].1);
+    let way = |from: DVec2, to: DVec2| (to - from).normalize();
+    let mut profile = vec![(corners[0].0, right(way(corners[0].0, corners[1].0)))];
+    for neighbours in corners.windows(3) {
+        let &[(from, _), (corner, radius), (to, _)] = neighbours else { continue };
+        let (before, after) = (right(way(from, corner)), right(way(corner, to)));
         let turn = before.angle_to(after);
-        let start = corners[i].0 - way(i - 1) * radius * (turn.abs() / 2.0).tan();
+        let start = corner - way(from, corner) * radius * (turn.abs() / 2.0).tan();
         let centre = start - before * radius * turn.signum();
         for step in 0..=STEPS {
             let normal = DVec2::from_angle(turn * step as f64 / STEPS as f64).rotate(before);
             profile.push((centre + normal * radius * turn.signum(), normal));
         }
     }
-    profile.push((corners[last].0, right(way(last - 1))));
+    profile.push((corners[last].0, right(way(corners[last - 1].0, corners[last].0))));
     profile
 }
 
@@ -141,7 +142,7 @@ fn radiance(d: DVec3) -> [f64; 3] {
     // Curtains that glow, and the gap between them: azimuth and elevation from its middle [degrees].
     let (sin, cos) = WINDOW[0].to_radians().sin_cos();
     let towards = DVec3::new(sin * 0.85, 0.52, -cos * 0.85).normalize();
-    let curtains = DVec3::new(1.6, 1.42, 1.15) * ramp(0.1, 1.0, d.dot(towards));
+    let curtains = DVec3::new(1.55, 1.42, 1.22) * ramp(0.3, 1.0, d.dot(towards));
     let azimuth = (d.x * cos + d.z * sin).atan2(d.x * sin - d.z * cos).to_degrees();
     let pane = |x: f64, half: f64| ramp(half, half - 3.0, x.abs()) * ramp(0.6, 1.8, x.abs());
     let gap = DVec3::new(3.0, 2.8, 2.5) * pane(azimuth, 16.0) * pane(d.y.asin().to_degrees() - WINDOW[1], 27.0);

@@ -4,6 +4,7 @@ mod common;
 
 use common::{World, assert_mean, diffuse, glass, medium};
 use tyndall::{
+    bsdf::microfacet::Distribution,
     film::{Crop, Filter},
     integrator::{Analog, Integrator, VolPath},
     light::{Light, PointLight},
@@ -144,6 +145,7 @@ fn a_ball_of_flint_glass_under_a_uniform_sky_vanishes() {
         let flint = Material::Dielectric {
             eta: Index::Glass(*Glass::named("SF11").unwrap()),
             alpha: [0.0; 2],
+            distribution: Distribution::default(),
             reflection_tint: Spectrum::constant(1.0),
             transmission_tint: Spectrum::constant(1.0),
         };

@@ -56,7 +56,7 @@ fn surfaces() -> World {
         0.6,
         Material::Conductor {
             metal,
-            alpha: [0.4; 2],
+            alpha: [0.6; 2],
             distribution: Distribution::Beckmann,
             tint: grey(1.0),
             sides: Sides::Both,
@@ -130,7 +130,7 @@ fn the_surface_estimators_look_through_media() {
     };
     let (clear, foggy) = (with(false), with(true));
     for estimator in &Lecture::ALL[..4] {
-        let (expected, mut m) = (measure(&clear, estimator, 20_000), measure(&foggy, estimator, 20_000));
+        let (expected, mut m) = (measure(&clear, estimator, 40_000), measure(&foggy, estimator, 40_000));
         for (own, other) in m.standard_error.iter_mut().zip(expected.standard_error) {
             *own = own.hypot(other);
         }
