@@ -99,7 +99,7 @@ mod tests {
         for falloff in [Falloff::SmoothStepCosine, Falloff::LinearAngle] {
             let s = spot(falloff);
             assert_eq!(s.share(1.0), 1.0);
-            assert_eq!(s.share(25f32.to_radians().cos().min(s.cos_outer)), 0.0);
+            assert_eq!(s.share(s.cos_outer), 0.0);
         }
         let linear = spot(Falloff::LinearAngle).share(25f32.to_radians().cos());
         assert!((linear - 0.5).abs() < 1e-4, "{linear}");
