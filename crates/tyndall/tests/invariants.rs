@@ -234,3 +234,19 @@ fn roulette_keeps_the_variance_finite_at_albedo_one() {
     assert!((mean - 1.0).abs() < 4.0 * (moment(2) / n).sqrt(), "{mean}");
     assert!(kurtosis < 30.0, "kurtosis {kurtosis}");
 }
+
+/// A ball of few facets with the normals of a sphere, of smooth glass and full of fog: shading normals that disagree with
+/// the facets neither take light nor let a path out of the medium unseen.
+#[test]
+fn a_faceted_ball_of_glass_with_smooth_normals_vanishes() {
+    for integrator in [&VolPath::default() as &dyn Integrator, &Analog] {
+        let mut world = World::seen(Vec3::new(0.3, 0.5, 5.0), Vec3::new(0.3, 0.5, 0.0));
+        world.faceted_ball(1.0, 12, glass(1.33, 0.0), medium([0.0; 3], [3.0, 4.0, 5.0], 0.0));
+        world.sky(1.0);
+        let scene = world.scene();
+        let settings = Settings { spp: 60_000, sampler: SamplerKind::Independent, ..Settings::default() };
+        let rendering = render(&scene, integrator, &settings, &());
+        assert_eq!(rendering.tally.leaks, 0, "{} collisions", rendering.tally.collisions);
+        assert_mean("faceted ball", &common::measure(&scene, integrator, 60_000), [1.0; 3], 0.01);
+    }
+}

@@ -53,9 +53,17 @@ pub struct Scattered {
 
 impl Vertex {
     /// A vertex on a surface that a ray along `dir` has hit.
+    ///
+    /// Where the shading normal turns away from a ray that the true surface faces, the true normal shades: the two must
+    /// agree on the side that the path comes from, or it would change sides without changing media.
     #[inline]
     pub fn surface(hit: Interaction, bsdf: Bsdf, dir: Vec3) -> Self {
         let frame = hit.shading_frame();
+        let wo = frame.to_local(-dir);
+        if same_side(wo.z, -dir.dot(hit.ng)) {
+            return Self::Surface { hit, frame, bsdf, wo };
+        }
+        let frame = Frame::around(hit.ng);
         Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir) }
     }
 
@@ -63,8 +71,8 @@ impl Vertex {
     #[inline]
     pub fn reference(&self) -> Reference {
         match self {
-            Self::Surface { hit, bsdf, wo, .. } => {
-                let normal = (!bsdf.transmits()).then_some(if wo.z > 0.0 { hit.ns } else { -hit.ns });
+            Self::Surface { hit, frame, bsdf, wo } => {
+                let normal = (!bsdf.transmits()).then_some(if wo.z > 0.0 { frame.n } else { -frame.n });
                 Reference { p: hit.p, normal }
             }
             Self::Medium { p, .. } => Reference { p: *p, normal: None },
@@ -103,18 +111,13 @@ impl Vertex {
     pub fn sample(&self, [u_lobe, u, v]: [f32; 3]) -> Option<Scattered> {
         match self {
             Self::Surface { hit, frame, bsdf, wo } => {
-                let sample = bsdf.sample(*wo, u_lobe, Vec2::new(u, v))?;
-                let dir = frame.to_world(sample.wi).normalize();
-                if !same_side(sample.wi.z, dir.dot(hit.ng)) {
-                    return None;
-                }
-                Some(Scattered {
-                    ray: hit.spawn(dir),
-                    weight: sample.weight,
-                    pdf: sample.pdf,
-                    specular: sample.specular,
-                    eta: sample.eta,
-                    crossed: sample.wi.z * wo.z < 0.0,
+                let u = Vec2::new(u, v);
+                sample_surface(hit, frame, bsdf, *wo, u_lobe, u).or_else(|| {
+                    // A mirror has no other direction to offer: where the shading normal sends it through the surface,
+                    // the true normal shades, so that no light is lost.
+                    let flat = Frame::around(hit.ng);
+                    let wo = flat.to_local(frame.to_world(*wo));
+                    if bsdf.is_specular() { sample_surface(hit, &flat, bsdf, wo, u_lobe, u) } else { None }
                 })
             }
             Self::Medium { p, dir, phase } => {
@@ -141,6 +144,22 @@ impl Vertex {
             Self::Medium { p, .. } => *p,
         }
     }
+}
+
+/// Draws a direction in the local space `frame`; `None` also where it would be on different sides of the shading and of
+/// the geometric normal.
+#[inline]
+fn sample_surface(hit: &Interaction, frame: &Frame, bsdf: &Bsdf, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<Scattered> {
+    let sample = bsdf.sample(wo, u_lobe, u)?;
+    let dir = frame.to_world(sample.wi).normalize();
+    same_side(sample.wi.z, dir.dot(hit.ng)).then(|| Scattered {
+        ray: hit.spawn(dir),
+        weight: sample.weight,
+        pdf: sample.pdf,
+        specular: sample.specular,
+        eta: sample.eta,
+        crossed: sample.wi.z * wo.z < 0.0,
+    })
 }
 
 /// Whether a direction is on the same side of the shading and of the geometric normal: else it would leak.

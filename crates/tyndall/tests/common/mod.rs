@@ -156,6 +156,34 @@ impl World {
         self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap()
     }
 
+    /// A ball of `n` by `2n` quadrilaterals with the normals of a sphere.
+    pub(crate) fn faceted_ball(&mut self, radius: f32, n: u32, material: Material, inside: Homogeneous) {
+        let interface = self.filled(Some(inside));
+        self.object(material, interface);
+        let m = 2 * n;
+        let direction = |i: u32, j: u32| {
+            let (sin_theta, cos_theta) = (std::f32::consts::PI * i as f32 / n as f32).sin_cos();
+            let (sin_phi, cos_phi) = (std::f32::consts::TAU * j as f32 / m as f32).sin_cos();
+            Vec3::new(sin_theta * sin_phi, cos_theta, sin_theta * cos_phi)
+        };
+        // Two poles, and n − 1 rings of m vertices between them.
+        let rings = (1..n).flat_map(|i| (0..m).map(move |j| (i, j))).map(|(i, j)| direction(i, j));
+        let normals: Vec<Vec3> = rings.chain([Vec3::Y, -Vec3::Y]).collect();
+        let at = |i: u32, j: u32| match i {
+            0 => (n - 1) * m,
+            i if i == n => (n - 1) * m + 1,
+            i => (i - 1) * m + j % m,
+        };
+        let quads = (0..n).flat_map(|i| (0..m).map(move |j| (i, j)));
+        let indices = quads
+            .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]])
+            .filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+            .collect();
+        let positions = normals.iter().map(|d| *d * radius).collect();
+        let mesh = Mesh { positions, indices, normals, uvs: Vec::new(), reversed: false };
+        self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
+    }
+
     /// A wide plane slab between y = −thickness and y = 0.
     pub(crate) fn slab(&mut self, thickness: f32, material: Material, inside: Homogeneous) {
         let wide = 1e4 * thickness.max(1.0);
