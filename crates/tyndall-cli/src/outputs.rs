@@ -69,7 +69,11 @@ impl From<ToneOptions> for Tone {
 pub(crate) fn write_text(to: &Path, text: &str) -> anyhow::Result<()> {
     if to == Path::new("-") {
         let mut stdout = std::io::stdout().lock();
-        return writeln!(stdout, "{text}").and_then(|()| stdout.flush()).context("cannot write to standard output");
+        return match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+            // The reader has seen enough: `tyndall info SCENE | head`.
+            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+            outcome => outcome.context("cannot write to standard output"),
+        };
     }
     Ok(save::replace(to, format!("{text}\n").as_bytes())?)
 }
