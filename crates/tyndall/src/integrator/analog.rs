@@ -10,7 +10,7 @@ use crate::{
     material::Material,
     math::{Ray, Vec2},
     medium::{Inside, MediumInterface},
-    path::{Vertex, shadow},
+    path::{History, Vertex, shadow},
     sampling::Sampler,
     scene::Scene,
     spectrum::{Lanes, Wavelengths},
@@ -39,6 +39,7 @@ impl Integrator for Analog {
 fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut Sampler, tally: &mut Tally) -> f32 {
     let mut inside = Inside::of(scene, scene.camera.medium, w);
     let (mut radiance, mut throughput) = (0.0, 1.0);
+    let mut history = History::default();
     loop {
         let (sigma_t, sigma_s) =
             inside.coefficients().map_or((0.0, 0.0), |c| (c.sigma_t.lane(lane), c.sigma_s.lane(lane)));
@@ -94,7 +95,8 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             return radiance;
         }
         // A surface absorbs by chance, as a medium does; radiance compressed by refraction is no loss.
-        let survival = next.weight.lane(lane) * next.eta * next.eta;
+        history.scattered(next.specular);
+        let survival = (next.weight.lane(lane) * next.eta * next.eta).min(history.survival());
         if survival < 1.0 {
             if sampler.next_1d() >= survival {
                 return radiance;

@@ -184,7 +184,7 @@ impl Path {
             self.weights.scatter(scattered.weight, scattered.pdf);
         }
         self.history.eta_scale *= scattered.eta * scattered.eta;
-        self.history.vertices += 1;
+        self.history.scattered(scattered.specular);
         self.last_vertex = reference;
         self.ray = scattered.ray;
         if let (true, Vertex::Surface { hit, .. }) = (scattered.crossed, vertex) {
@@ -255,25 +255,14 @@ impl Path {
     #[inline]
     fn survives(&mut self, threshold: f32) -> bool {
         let throughput = self.weights.throughput() * self.history.eta_scale;
-        let survival = if throughput < threshold {
-            throughput / threshold
-        } else if self.is_endless() {
-            ENDLESS_SURVIVAL
-        } else {
+        let survival = if throughput < threshold { throughput / threshold } else { self.history.survival() };
+        if survival == 1.0 {
             return true;
-        };
+        }
         if self.sampler.roulette() >= survival {
             return false;
         }
         self.weights.beta /= survival;
         true
     }
-
-    /// A million vertices without losing weight: light that nothing absorbs and that cannot leave.
-    fn is_endless(&self) -> bool {
-        self.history.vertices >= 1 << 20
-    }
 }
-
-/// Survival of a path that would otherwise never end.
-const ENDLESS_SURVIVAL: f32 = 0.999;

@@ -10,12 +10,42 @@ pub struct History {
     /// Product of `1/η²` over the boundaries crossed, undone: radiance is compressed in glass, and roulette must not
     /// take that for a loss [1].
     pub eta_scale: f32,
+    /// Dirac lobes in a row: mirrors and glass since anything last scattered.
+    pub specular_run: u32,
     /// Whether the path has gone on with its hero wavelength alone.
     pub parted: bool,
 }
 
+/// Dirac lobes in a row after which light counts as trapped.
+const TRAPPED: u32 = 128;
+/// Events after which a path counts as endless.
+const ENDLESS: u32 = 1 << 20;
+
+impl History {
+    /// The probability with which a path goes on that has lost no weight. It is 1, but for light that total reflection
+    /// guides around a body without loss, and for light that nothing absorbs and that finds no way out: such paths
+    /// would never end by themselves.
+    #[inline]
+    pub fn survival(&self) -> f32 {
+        if self.specular_run >= TRAPPED {
+            0.98
+        } else if self.vertices >= ENDLESS {
+            0.999
+        } else {
+            1.0
+        }
+    }
+
+    /// Notes a scattering by a Dirac lobe, or by another.
+    #[inline]
+    pub fn scattered(&mut self, specular: bool) {
+        self.vertices = self.vertices.saturating_add(1);
+        self.specular_run = if specular { self.specular_run.saturating_add(1) } else { 0 };
+    }
+}
+
 impl Default for History {
     fn default() -> Self {
-        Self { vertices: 0, order: 0, eta_scale: 1.0, parted: false }
+        Self { vertices: 0, order: 0, eta_scale: 1.0, specular_run: 0, parted: false }
     }
 }
