@@ -212,8 +212,7 @@ fn energy_lost_to_a_depth_limit_is_tallied() {
 }
 
 /// Roulette that is capped below the albedo has infinite variance in media of albedo 1: weights grow as (1/0.95)ⁿ. Ours
-/// never lets a weight grow beyond its threshold: no sample of a white furnace exceeds the sky's radiance by more than
-/// the share that light sampling may add, and the fourth moment stays of the order of the second.
+/// never lifts a weight beyond its threshold, so the fourth moment stays of the order of the square of the second.
 #[test]
 fn roulette_keeps_the_variance_finite_at_albedo_one() {
     let mut world = World::seen(Vec3::new(0.0, 0.3, 5.0), Vec3::new(0.0, 0.3, 0.0));

@@ -1,4 +1,5 @@
-//! The peers' scenes and, for each, the setting with which Mitsuba 3 does best, as measured on 128² pixels.
+//! The peers' scenes and, for each, the setting for Mitsuba 3: the best that was measured on
+//! 128² pixels (`shared/peers/README.md`); for `f_grains` and `a3` a guess.
 //!
 //! Roulette is off in scattering media of high albedo: Mitsuba's default caps survival at 0.95 after depth 5, which
 //! makes the variance infinite there and loses light in practice. Light sampling inside the medium is off where a

@@ -91,12 +91,6 @@ impl Lanes {
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self::new(self.to_array().map(f))
     }
-
-    /// Lane-wise quotient where 0/0 is 0: a coefficient that is absent has no share.
-    #[must_use]
-    pub fn safe_div(self, other: Self) -> Self {
-        Self::new(std::array::from_fn(|i| if other.lane(i) == 0.0 { 0.0 } else { self.lane(i) / other.lane(i) }))
-    }
 }
 
 macro_rules! lane_wise {
