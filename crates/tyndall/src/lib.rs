@@ -3,7 +3,7 @@
 //! The library takes no files, prints nothing and reads no clock: `tyndall-formats` turns what a user wrote into a
 //! [`scene::Scene`], this crate turns a scene into an image with its standard error ([`render::render`]).
 //!
-//! The floors, from the ground up: [`math`] and [`sampling`], [`spectrum`], the models ([`phase`], [`medium`],
+//! The floors, from the ground up: [`math`] and [`sampling`], [`spectrum`] and [`texture`], the models ([`phase`], [`medium`],
 //! [`bsdf`], [`light`], [`shape`], [`camera`]), then [`path`] and [`integrator`]; and beside
 //! them the [`lecture`] that it all comes from.
 
@@ -24,3 +24,4 @@ pub mod scene;
 pub mod shape;
 pub mod spectrum;
 pub mod tally;
+pub mod texture;

@@ -2,7 +2,8 @@
 
 use crate::{
     bsdf::{Bsdf, Sides, microfacet::Distribution},
-    spectrum::{Lanes, Spectrum, Wavelengths, glass::Glass},
+    spectrum::{Lanes, Wavelengths, glass::Glass},
+    texture::{Texture, TexturePoint},
 };
 
 /// A surface's material.
@@ -11,7 +12,7 @@ pub enum Material {
     /// Lambertian.
     Diffuse {
         /// Reflectance, 0 to 1 [1].
-        reflectance: Spectrum,
+        reflectance: Texture,
         /// The sides that reflect.
         sides: Sides,
     },
@@ -19,12 +20,12 @@ pub enum Material {
     Conductor {
         /// How it reflects.
         metal: Metal,
-        /// Roughness along the tangent and across [1].
-        alpha: [f32; 2],
+        /// Roughness of its microfacets.
+        alpha: Roughness,
         /// The law of the slopes, where it is rough.
         distribution: Distribution,
         /// A factor on what is reflected [1].
-        tint: Spectrum,
+        tint: Texture,
         /// The sides that reflect.
         sides: Sides,
     },
@@ -32,17 +33,43 @@ pub enum Material {
     Dielectric {
         /// Index of the inside over that of the outside [1].
         eta: Index,
-        /// Roughness along the tangent and across [1].
-        alpha: [f32; 2],
+        /// Roughness of its microfacets.
+        alpha: Roughness,
         /// The law of the slopes, where it is rough.
         distribution: Distribution,
         /// A factor on what is reflected [1].
-        reflection_tint: Spectrum,
+        reflection_tint: Texture,
         /// A factor on what is transmitted [1].
-        transmission_tint: Spectrum,
+        transmission_tint: Texture,
     },
     /// No material: light passes, and may enter another medium.
     Null,
+}
+
+/// The roughness α of microfacets along the tangent and across [1].
+#[derive(Debug, Clone)]
+pub struct Roughness {
+    /// Along the tangent.
+    pub u: Texture,
+    /// Across.
+    pub v: Texture,
+    /// Whether α is the square root of the textures' values (pbrt's `remaproughness`), or the value.
+    pub remap: bool,
+}
+
+impl Roughness {
+    /// The same α everywhere.
+    pub fn constant([u, v]: [f32; 2]) -> Self {
+        Self { u: u.into(), v: v.into(), remap: false }
+    }
+
+    #[inline]
+    fn at(&self, at: &TexturePoint) -> [f32; 2] {
+        [&self.u, &self.v].map(|texture| {
+            let value = texture.scalar(at).max(0.0);
+            if self.remap { value.sqrt() } else { value }
+        })
+    }
 }
 
 /// How a metal reflects.
@@ -51,12 +78,12 @@ pub enum Metal {
     /// By its complex index `eta + i·k` [1].
     Index {
         /// Real part [1].
-        eta: Spectrum,
+        eta: Texture,
         /// Imaginary part [1].
-        k: Spectrum,
+        k: Texture,
     },
     /// By its reflectance at normal incidence, 0 to 1 [1].
-    Reflectance(Spectrum),
+    Reflectance(Texture),
     /// All light, at every angle.
     Mirror,
 }
@@ -73,22 +100,26 @@ pub enum Index {
 impl Material {
     /// The BSDF in the lanes of a path, whose lane `hero` decides where wavelengths part.
     #[inline]
-    pub fn bsdf(&self, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+    pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
         match self {
-            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(wavelengths)).on(*sides),
-            Self::Conductor { metal, alpha: [x, y], distribution, tint, sides } => {
+            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(at, wavelengths)).on(*sides),
+            Self::Conductor { metal, alpha, distribution, tint, sides } => {
+                let [x, y] = alpha.at(at);
                 let bsdf = match metal {
-                    Metal::Index { eta, k } => Bsdf::conductor(eta.eval(wavelengths), k.eval(wavelengths), *x, *y),
-                    Metal::Reflectance(r) => Bsdf::conductor_of_reflectance(r.eval(wavelengths), *x, *y),
+                    Metal::Index { eta, k } => {
+                        Bsdf::conductor(eta.eval(at, wavelengths), k.eval(at, wavelengths), x, y)
+                    }
+                    Metal::Reflectance(r) => Bsdf::conductor_of_reflectance(r.eval(at, wavelengths), x, y),
                     // |1 − ik| = |1 + ik|: a purely imaginary index reflects all.
-                    Metal::Mirror => Bsdf::conductor(Lanes::ZERO, Lanes::ONE, *x, *y),
+                    Metal::Mirror => Bsdf::conductor(Lanes::ZERO, Lanes::ONE, x, y),
                 };
-                bsdf.distributed(*distribution).tinted(tint.eval(wavelengths), Lanes::ONE).on(*sides)
+                bsdf.distributed(*distribution).tinted(tint.eval(at, wavelengths), Lanes::ONE).on(*sides)
             }
-            Self::Dielectric { eta, alpha: [x, y], distribution, reflection_tint, transmission_tint } => {
-                Bsdf::dielectric(eta.at(wavelengths, hero), *x, *y)
+            Self::Dielectric { eta, alpha, distribution, reflection_tint, transmission_tint } => {
+                let [x, y] = alpha.at(at);
+                Bsdf::dielectric(eta.at(wavelengths, hero), x, y)
                     .distributed(*distribution)
-                    .tinted(reflection_tint.eval(wavelengths), transmission_tint.eval(wavelengths))
+                    .tinted(reflection_tint.eval(at, wavelengths), transmission_tint.eval(at, wavelengths))
             }
             Self::Null => Bsdf::Null,
         }

@@ -8,7 +8,7 @@ use tyndall::{
     film::{Crop, Filter},
     integrator::{Analog, Integrator, VolPath},
     light::{Light, PointLight},
-    material::{Index, Material},
+    material::{Index, Material, Roughness},
     math::Vec3,
     medium::MediumId,
     render::{Rendering, Settings, render},
@@ -144,10 +144,10 @@ fn a_ball_of_flint_glass_under_a_uniform_sky_vanishes() {
         world.color = ColorMode::Spectral;
         let flint = Material::Dielectric {
             eta: Index::Glass(*Glass::named("SF11").unwrap()),
-            alpha: [0.0; 2],
+            alpha: Roughness::constant([0.0; 2]),
             distribution: Distribution::default(),
-            reflection_tint: Spectrum::constant(1.0),
-            transmission_tint: Spectrum::constant(1.0),
+            reflection_tint: 1.0.into(),
+            transmission_tint: 1.0.into(),
         };
         world.sphere(Vec3::ZERO, 1.0, flint, None);
         world.sky(1.0);

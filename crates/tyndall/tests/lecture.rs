@@ -4,13 +4,13 @@ mod common;
 
 use std::f64::consts::FRAC_1_PI;
 
-use common::{World, assert_mean, diffuse, glass, grey, measure, medium};
+use common::{World, assert_mean, diffuse, glass, measure, medium};
 use tyndall::{
     bsdf::{Sides, microfacet::Distribution},
     integrator::VolPath,
     lecture::{Lecture, MAX_DEPTH, NAMES, named},
     light::{Light, PointLight},
-    material::{Material, Metal},
+    material::{Material, Metal, Roughness},
     math::Vec3,
     render::{Settings, render},
     sampling::SamplerKind,
@@ -50,15 +50,15 @@ fn assert_agreement(scene: &Scene, estimators: &[Lecture], spp: u32, precision: 
 fn surfaces() -> World {
     let mut world = World::seen(Vec3::new(0.0, 1.5, 4.0), Vec3::new(0.1, -1.0, 0.3));
     world.cuboid(Vec3::new(-4.0, -2.0, -4.0), Vec3::new(4.0, -1.0, 4.0), diffuse(0.7), None);
-    let metal = Metal::Reflectance(Spectrum::albedo_rgb([0.9, 0.6, 0.3]));
+    let metal = Metal::Reflectance(Spectrum::albedo_rgb([0.9, 0.6, 0.3]).into());
     world.sphere(
         Vec3::new(1.1, -0.4, 0.0),
         0.6,
         Material::Conductor {
             metal,
-            alpha: [0.6; 2],
+            alpha: Roughness::constant([0.6; 2]),
             distribution: Distribution::Beckmann,
-            tint: grey(1.0),
+            tint: 1.0.into(),
             sides: Sides::Both,
         },
         None,

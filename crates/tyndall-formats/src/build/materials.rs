@@ -2,16 +2,14 @@
 
 use tyndall::{
     bsdf::{Sides, microfacet::Distribution},
-    material::{Index, Material, Metal},
-    spectrum::{
-        Spectrum,
-        glass::{GLASSES, Glass},
-    },
+    material::{Index, Material, Metal, Roughness},
+    spectrum::glass::{GLASSES, Glass},
+    texture::Texture,
 };
 
 use super::{Builder, spectra::Measure};
 use crate::{
-    desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc},
+    desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc, Varying},
     error::SceneError,
     source::Spanned,
 };
@@ -21,11 +19,11 @@ impl Builder<'_> {
         let sides = if desc.two_sided { Sides::Both } else { Sides::Outside };
         match &desc.kind {
             MaterialKind::Diffuse { reflectance } => {
-                Some(Material::Diffuse { reflectance: self.spectrum(reflectance, Measure::Share)?, sides })
+                Some(Material::Diffuse { reflectance: self.texture(reflectance, Measure::Share)?, sides })
             }
             MaterialKind::Conductor { optics, roughness, tint } => Some(Material::Conductor {
                 metal: self.metal(optics)?,
-                alpha: alpha(roughness),
+                alpha: self.roughness(roughness)?,
                 distribution: distribution(roughness),
                 tint: self.tint(tint.as_ref())?,
                 sides,
@@ -33,7 +31,7 @@ impl Builder<'_> {
             MaterialKind::Dielectric { eta, roughness, reflection_tint, transmission_tint } => {
                 Some(Material::Dielectric {
                     eta: self.index(eta)?,
-                    alpha: alpha(roughness),
+                    alpha: self.roughness(roughness)?,
                     distribution: distribution(roughness),
                     reflection_tint: self.tint(reflection_tint.as_ref())?,
                     transmission_tint: self.tint(transmission_tint.as_ref())?,
@@ -46,10 +44,10 @@ impl Builder<'_> {
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {
         match optics {
             ConductorOptics::EtaK { eta, k } => Some(Metal::Index {
-                eta: self.spectrum(eta, Measure::Coefficient)?,
-                k: self.spectrum(k, Measure::Coefficient)?,
+                eta: self.texture(eta, Measure::Coefficient)?,
+                k: self.texture(k, Measure::Coefficient)?,
             }),
-            ConductorOptics::Reflectance(r) => Some(Metal::Reflectance(self.spectrum(r, Measure::Share)?)),
+            ConductorOptics::Reflectance(r) => Some(Metal::Reflectance(self.texture(r, Measure::Share)?)),
             ConductorOptics::Mirror => Some(Metal::Mirror),
         }
     }
@@ -71,13 +69,15 @@ impl Builder<'_> {
         }
     }
 
-    fn tint(&mut self, tint: Option<&Spanned<SpectrumDesc>>) -> Option<Spectrum> {
-        tint.map_or(Some(Spectrum::constant(1.0)), |t| self.spectrum(t, Measure::Share))
+    fn roughness(&mut self, desc: &RoughnessDesc) -> Option<Roughness> {
+        let u = self.texture(&desc.u, Measure::Coefficient);
+        let v = self.texture(&desc.v, Measure::Coefficient);
+        u.zip(v).map(|(u, v)| Roughness { u, v, remap: desc.remap })
     }
-}
 
-fn alpha(roughness: &RoughnessDesc) -> [f32; 2] {
-    roughness.alpha().map(|a| a as f32)
+    fn tint(&mut self, tint: Option<&Spanned<Varying>>) -> Option<Texture> {
+        tint.map_or(Some(Texture::from(1.0)), |t| self.texture(t, Measure::Share))
+    }
 }
 
 fn distribution(roughness: &RoughnessDesc) -> Distribution {

@@ -5,6 +5,9 @@ mod materials;
 mod media;
 mod shapes;
 mod spectra;
+mod textures;
+
+use std::collections::HashMap;
 
 use glam::DMat4;
 use tyndall::{
@@ -14,13 +17,16 @@ use tyndall::{
     math::Transform,
     scene::Scene,
     spectrum::ColorMode,
+    texture::Texture,
 };
 
 use crate::{
-    desc::{CameraDesc, FilmDesc, FilterDesc, MaterialId, MediumId, SceneDesc},
+    desc::{CameraDesc, FilmDesc, FilterDesc, MaterialId, MediumId, SceneDesc, TextureId},
     error::{Diagnostics, ErrorList, SceneError},
     source::{SourceMap, Span},
 };
+use spectra::Measure;
+use textures::Pictures;
 
 /// Makes the world of a description. Everything that is wrong with it is found in one go.
 ///
@@ -28,7 +34,7 @@ use crate::{
 /// Files that cannot be read, unknown names of measured data, coefficients that are no physics.
 pub fn build(desc: &SceneDesc, sources: SourceMap, color: ColorMode) -> Result<(Scene, SourceMap), Diagnostics> {
     let mut errors = ErrorList::default();
-    let scene = (Builder { desc, errors: &mut errors }).scene(color);
+    let scene = Builder::new(desc, &mut errors).scene(color);
     match scene {
         Some(scene) if errors.is_empty() => Ok((scene, sources)),
         _ => Err(errors.into_diagnostics(sources)),
@@ -39,6 +45,15 @@ pub fn build(desc: &SceneDesc, sources: SourceMap, color: ColorMode) -> Result<(
 struct Builder<'a> {
     desc: &'a SceneDesc,
     errors: &'a mut ErrorList,
+    /// Textures that are made, or were found wrong.
+    textures: HashMap<(TextureId, Measure), Option<Texture>>,
+    pictures: Pictures,
+}
+
+impl<'a> Builder<'a> {
+    fn new(desc: &'a SceneDesc, errors: &'a mut ErrorList) -> Self {
+        Self { desc, errors, textures: HashMap::new(), pictures: Pictures::new() }
+    }
 }
 
 impl Builder<'_> {

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// What a spectrum measures, which says what an RGB triple becomes.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Measure {
     /// A share of light, 0 to 1.
     Share,

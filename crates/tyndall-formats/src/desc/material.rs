@@ -1,6 +1,6 @@
 //! What surfaces are made of.
 
-use super::{Span, Spanned, SpectrumDesc};
+use super::{Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub enum MaterialKind {
     /// Lambert's law.
     Diffuse {
         /// Reflectance, in [0, 1].
-        reflectance: Spanned<SpectrumDesc>,
+        reflectance: Spanned<Varying>,
     },
     /// A metal.
     Conductor {
@@ -31,7 +31,7 @@ pub enum MaterialKind {
         /// Roughness.
         roughness: RoughnessDesc,
         /// Factor on what is reflected, if not 1.
-        tint: Option<Spanned<SpectrumDesc>>,
+        tint: Option<Spanned<Varying>>,
     },
     /// Glass, water, the skin of milk.
     Dielectric {
@@ -40,9 +40,9 @@ pub enum MaterialKind {
         /// Roughness.
         roughness: RoughnessDesc,
         /// Factor on what is reflected, if not 1.
-        reflection_tint: Option<Spanned<SpectrumDesc>>,
+        reflection_tint: Option<Spanned<Varying>>,
         /// Factor on what is transmitted, if not 1.
-        transmission_tint: Option<Spanned<SpectrumDesc>>,
+        transmission_tint: Option<Spanned<Varying>>,
     },
     /// No surface at all: a boundary of media that light passes unchanged.
     Interface,
@@ -54,23 +54,23 @@ pub enum ConductorOptics {
     /// By Fresnel's equations for the complex index eta + i·k, relative to vacuum.
     EtaK {
         /// Real part.
-        eta: Spanned<SpectrumDesc>,
+        eta: Spanned<Varying>,
         /// Imaginary part.
-        k: Spanned<SpectrumDesc>,
+        k: Spanned<Varying>,
     },
     /// By Fresnel's equations for the index (eta = 1) that gives this reflectance at normal incidence (pbrt).
-    Reflectance(Spanned<SpectrumDesc>),
+    Reflectance(Spanned<Varying>),
     /// As a perfect mirror, at every angle (Mitsuba's material `none`).
     Mirror,
 }
 
 /// Roughness in the user's measure.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RoughnessDesc {
     /// Along the first tangent, at least 0: 0 is smooth.
-    pub u: f64,
+    pub u: Spanned<Varying>,
     /// Along the second tangent.
-    pub v: f64,
+    pub v: Spanned<Varying>,
     /// Whether `u` and `v` are perceived roughness, whose square root is the α of the model (pbrt), or α itself.
     pub remap: bool,
     /// The distribution of normals.
@@ -87,11 +87,15 @@ pub enum MicrofacetKind {
 }
 
 impl RoughnessDesc {
-    /// No roughness.
-    pub const SMOOTH: Self = Self { u: 0.0, v: 0.0, remap: false, distribution: MicrofacetKind::Ggx };
+    /// No roughness; `span` is where the file might have said otherwise.
+    pub fn smooth(span: Span) -> Self {
+        let none = Spanned::new(Varying::constant(0.0), span);
+        Self { u: none.clone(), v: none, remap: false, distribution: MicrofacetKind::Ggx }
+    }
 
-    /// The model's α along the two tangents.
-    pub fn alpha(&self) -> [f64; 2] {
-        if self.remap { [self.u.sqrt(), self.v.sqrt()] } else { [self.u, self.v] }
+    /// The model's α along the two tangents, where it is the same everywhere.
+    pub fn alpha(&self) -> Option<[f64; 2]> {
+        let (u, v) = self.u.value.number().zip(self.v.value.number())?;
+        Some(if self.remap { [u.sqrt(), v.sqrt()] } else { [u, v] })
     }
 }

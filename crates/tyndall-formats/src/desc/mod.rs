@@ -25,6 +25,7 @@ mod medium;
 mod settings;
 mod shape;
 mod spectrum;
+mod texture;
 
 use std::path::PathBuf;
 
@@ -35,6 +36,9 @@ pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
 pub use shape::{GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 pub use spectrum::SpectrumDesc;
+pub use texture::{
+    Board, Encoding, ImageDesc, MappingDesc, NoiseDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind,
+};
 
 pub use crate::source::{Span, Spanned};
 
@@ -63,6 +67,8 @@ pub struct SceneDesc {
     pub sampler: SamplerDesc,
     /// How light is transported.
     pub integrator: IntegratorDesc,
+    /// Textures, named or not; a part of one comes before it.
+    pub textures: Vec<TextureDesc>,
     /// Materials, named or not.
     pub materials: Vec<MaterialDesc>,
     /// Participating media.
@@ -83,6 +89,11 @@ impl SceneDesc {
     /// A material. `None` for an id of another scene.
     pub fn material(&self, id: MaterialId) -> Option<&MaterialDesc> {
         self.materials.get(id.0 as usize)
+    }
+
+    /// A texture. `None` for an id of another scene.
+    pub fn texture(&self, id: TextureId) -> Option<&TextureDesc> {
+        self.textures.get(id.0 as usize)
     }
 
     /// A medium. `None` for an id of another scene.

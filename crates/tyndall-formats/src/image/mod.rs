@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 
 use ::image::{DynamicImage, ImageFormat, ImageReader};
 
+use crate::desc::Encoding;
+
 /// The longest side that is read \[pixels\].
 pub const MAX_SIDE: u32 = 32_768;
 /// The most pixels that are read: 16,384 × 8,192, 1.6 GB.
@@ -38,14 +40,22 @@ pub struct ImageError {
 }
 
 /// Reads an image; its format is that of its name's ending. Pixels that are not finite, or negative, are an error:
-/// there is no such light.
+/// there is no such light. Codes of 8 and 16 bits are sRGB.
 ///
 /// # Errors
 /// The file cannot be read, is no such image, is too large, or holds numbers that are no light.
 pub fn read_image(path: &Path) -> Result<Image, ImageError> {
+    read_encoded(path, Encoding::Srgb)
+}
+
+/// As [`read_image`], with codes of 8 and 16 bits in another encoding.
+///
+/// # Errors
+/// As [`read_image`].
+pub fn read_encoded(path: &Path, encoding: Encoding) -> Result<Image, ImageError> {
     std::fs::read(path)
         .map_err(|error| error.to_string())
-        .and_then(|bytes| parse_image(&bytes, &path.extension().unwrap_or_default().to_string_lossy()))
+        .and_then(|bytes| parse_encoded(&bytes, &path.extension().unwrap_or_default().to_string_lossy(), encoding))
         .map_err(|problem| ImageError { path: path.to_owned(), problem })
 }
 
@@ -54,6 +64,11 @@ pub fn read_image(path: &Path) -> Result<Image, ImageError> {
 /// # Errors
 /// As [`read_image`]; what is wrong, not where the bytes came from.
 pub fn parse_image(bytes: &[u8], extension: &str) -> Result<Image, String> {
+    parse_encoded(bytes, extension, Encoding::Srgb)
+}
+
+fn parse_encoded(bytes: &[u8], extension: &str, encoding: Encoding) -> Result<Image, String> {
+    let parse_coded = |bytes, format| parse_coded(bytes, format, encoding);
     let image = match extension.to_ascii_lowercase().as_str() {
         "exr" => openexr::parse(bytes),
         "pfm" => pfm::parse(bytes),
@@ -84,15 +99,23 @@ fn check_size(width: u64, height: u64) -> Result<(u32, u32), String> {
     Ok((width as u32, height as u32))
 }
 
-fn parse_coded(bytes: &[u8], format: ImageFormat) -> Result<Image, String> {
+fn parse_coded(bytes: &[u8], format: ImageFormat, encoding: Encoding) -> Result<Image, String> {
     let reader = || ImageReader::with_format(Cursor::new(bytes), format);
     let (width, height) = reader().into_dimensions().map_err(|error| error.to_string())?;
     let (width, height) = check_size(width.into(), height.into())?;
     let decoded = reader().decode().map_err(|error| error.to_string())?;
     let is_linear = matches!(decoded, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-    let to_linear = if is_linear { |c| c } else { srgb_to_linear };
-    let pixels = decoded.into_rgb32f().pixels().map(|p| p.0.map(to_linear)).collect();
+    let encoding = if is_linear { Encoding::Linear } else { encoding };
+    let pixels = decoded.into_rgb32f().pixels().map(|p| p.0.map(|code| decode(code, encoding))).collect();
     Ok(Image { width, height, pixels })
+}
+
+fn decode(code: f32, encoding: Encoding) -> f32 {
+    match encoding {
+        Encoding::Srgb => srgb_to_linear(code),
+        Encoding::Linear => code,
+        Encoding::Gamma(gamma) => code.powf(gamma as f32),
+    }
 }
 
 /// The sRGB transfer curve undone (IEC 61966-2-1), both in `[0, 1]`.

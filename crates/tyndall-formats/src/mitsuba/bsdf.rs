@@ -4,7 +4,7 @@ use super::object::{Measure, Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
 use super::words;
-use crate::desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc};
+use crate::desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc, Varying};
 use crate::error::SceneError;
 use crate::source::Spanned;
 
@@ -72,26 +72,76 @@ impl<'t> Builder<'t> {
     /// Any plugin but `twosided`.
     fn bsdf_kind(&mut self, plugin: &str, element: &'t Element) -> Option<MaterialKind> {
         let mut object = self.object(element);
-        let report = &mut self.report;
         let kind = match plugin {
             "diffuse" => {
-                MaterialKind::Diffuse { reflectance: object.spectrum_or("reflectance", Measure::Part, 0.5, report) }
+                MaterialKind::Diffuse { reflectance: self.varying_or(&mut object, "reflectance", Measure::Part, 0.5) }
             }
             "dielectric" | "roughdielectric" => MaterialKind::Dielectric {
-                eta: relative_index(&mut object, report),
-                roughness: roughness(plugin == "roughdielectric", &mut object, report),
-                reflection_tint: object.spectrum("specular_reflectance", Measure::Part, report),
-                transmission_tint: object.spectrum("specular_transmittance", Measure::Part, report),
+                eta: relative_index(&mut object, &mut self.report),
+                roughness: self.roughness(plugin == "roughdielectric", &mut object),
+                reflection_tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
+                transmission_tint: self.varying(&mut object, "specular_transmittance", Measure::Part),
             },
             "conductor" | "roughconductor" => MaterialKind::Conductor {
-                optics: conductor(&mut object, report)?,
-                roughness: roughness(plugin == "roughconductor", &mut object, report),
-                tint: object.spectrum("specular_reflectance", Measure::Part, report),
+                optics: self.conductor(&mut object)?,
+                roughness: self.roughness(plugin == "roughconductor", &mut object),
+                tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
             _ => MaterialKind::Interface,
         };
-        object.finish(report);
+        object.finish(&mut self.report);
         Some(kind)
+    }
+
+    /// Mitsuba's distribution is Beckmann's unless the file says otherwise, and its α is that of the model.
+    fn roughness(&mut self, rough: bool, object: &mut Object<'t>) -> RoughnessDesc {
+        let at = object.element.span;
+        if !rough {
+            return RoughnessDesc::smooth(at);
+        }
+        object.ignore(&["sample_visible"], "only visible normals are sampled", &mut self.report);
+        let kinds = [("beckmann", MicrofacetKind::Beckmann), ("ggx", MicrofacetKind::Ggx)];
+        let distribution = object.choice("distribution", &kinds, &mut self.report);
+        let [both, u, v] = ["alpha", "alpha_u", "alpha_v"].map(|name| self.varying(object, name, Measure::Amount));
+        let default = || Spanned::new(Varying::constant(0.1), at);
+        let (u, v) = match (both, u, v) {
+            (Some(both), None, None) => (both.clone(), both),
+            (None, Some(u), Some(v)) => (u, v),
+            (None, None, None) => (default(), default()),
+            (_, u, v) => {
+                let span = u.or(v).map_or(at, |given| given.span);
+                let error = SceneError::at(span, "give either \"alpha\", or both \"alpha_u\" and \"alpha_v\"");
+                self.report.errors.push(error);
+                (default(), default())
+            }
+        };
+        RoughnessDesc { u, v, remap: false, distribution }
+    }
+
+    /// By `eta` and `k`, by the name of a `material`, or a perfect mirror.
+    fn conductor(&mut self, object: &mut Object<'t>) -> Option<ConductorOptics> {
+        let material = object.string("material", &mut self.report);
+        let eta = self.varying(object, "eta", Measure::Amount);
+        let k = self.varying(object, "k", Measure::Amount);
+        let error = match (eta, k, material) {
+            (Some(eta), Some(k), None) => return Some(ConductorOptics::EtaK { eta, k }),
+            (None, None, None) => return Some(ConductorOptics::Mirror),
+            (None, None, Some(material)) if material.value == "none" => return Some(ConductorOptics::Mirror),
+            (None, None, Some(material)) if METALS.contains(&material.value) => {
+                let named = |what| SpectrumDesc::Named(format!("metal-{}-{what}", material.value));
+                let data = |what| Spanned::new(Varying::Everywhere(named(what)), material.span);
+                return Some(ConductorOptics::EtaK { eta: data("eta"), k: data("k") });
+            }
+            (None, None, Some(material)) => {
+                let error = SceneError::at(material.span, format!("the metal \"{}\" is not known", material.value));
+                error.suggest(material.value, METALS.iter().copied().chain(["none"]))
+            }
+            _ => {
+                SceneError::at(object.element.span, "a conductor has either a \"material\", or both \"eta\" and \"k\"")
+            }
+        };
+        self.report.errors.push(error);
+        None
     }
 }
 
@@ -122,54 +172,4 @@ fn index(object: &mut Object, name: &'static str, default: &str, report: &mut Re
     };
     report.errors.push(error);
     default
-}
-
-/// Mitsuba's distribution is Beckmann's unless the file says otherwise, and its α is that of the model.
-fn roughness(rough: bool, object: &mut Object, report: &mut Report) -> RoughnessDesc {
-    if !rough {
-        return RoughnessDesc::SMOOTH;
-    }
-    object.ignore(&["sample_visible"], "only visible normals are sampled", report);
-    let kinds = [("beckmann", MicrofacetKind::Beckmann), ("ggx", MicrofacetKind::Ggx)];
-    let distribution = object.choice("distribution", &kinds, report);
-    let mut alpha = |name| object.float(name, |alpha| alpha >= 0.0, "at least 0", report);
-    let (both, u, v) = (alpha("alpha"), alpha("alpha_u"), alpha("alpha_v"));
-    let (u, v) = match (both, u, v) {
-        (Some(both), None, None) => (both.value, both.value),
-        (None, Some(u), Some(v)) => (u.value, v.value),
-        (None, None, None) => (0.1, 0.1),
-        (_, u, v) => {
-            let span = u.or(v).map_or(object.element.span, |given| given.span);
-            report.errors.push(SceneError::at(span, "give either \"alpha\", or both \"alpha_u\" and \"alpha_v\""));
-            (0.1, 0.1)
-        }
-    };
-    RoughnessDesc { u, v, remap: false, distribution }
-}
-
-/// By `eta` and `k`, by the name of a `material`, or a perfect mirror.
-fn conductor(object: &mut Object, report: &mut Report) -> Option<ConductorOptics> {
-    let material = object.string("material", report);
-    let eta = object.spectrum("eta", Measure::Amount, report);
-    let k = object.spectrum("k", Measure::Amount, report);
-    match (eta, k, material) {
-        (Some(eta), Some(k), None) => Some(ConductorOptics::EtaK { eta, k }),
-        (None, None, None) => Some(ConductorOptics::Mirror),
-        (None, None, Some(material)) if material.value == "none" => Some(ConductorOptics::Mirror),
-        (None, None, Some(material)) if METALS.contains(&material.value) => {
-            let data = |what| material.map(|metal| SpectrumDesc::Named(format!("metal-{metal}-{what}")));
-            Some(ConductorOptics::EtaK { eta: data("eta"), k: data("k") })
-        }
-        (None, None, Some(material)) => {
-            let error = SceneError::at(material.span, format!("the metal \"{}\" is not known", material.value));
-            report.errors.push(error.suggest(material.value, METALS.iter().copied().chain(["none"])));
-            None
-        }
-        _ => {
-            let error =
-                SceneError::at(object.element.span, "a conductor has either a \"material\", or both \"eta\" and \"k\"");
-            report.errors.push(error);
-            None
-        }
-    }
 }

@@ -204,9 +204,22 @@ impl<'t> Object<'t> {
         self.value(name, &["point", "vector"], report, |element| vector(element, 0.0))
     }
 
+    /// The object of this name and tag, given here or by reference.
+    pub(super) fn object_of(&mut self, name: &'static str, tag: &str) -> Option<Child<'t>> {
+        let child = self.children.iter_mut().find(|child| child.name() == Some(name) && child.element.tag == tag)?;
+        self.known.push(name);
+        child.used = true;
+        Some(*child)
+    }
+
     /// `to_world`, or the identity.
     pub(super) fn transform(&mut self, report: &mut Report) -> DMat4 {
-        let element = self.parameter("to_world", &["transform"], report);
+        self.named_transform("to_world", report)
+    }
+
+    /// The transform of this name, or the identity.
+    pub(super) fn named_transform(&mut self, name: &'static str, report: &mut Report) -> DMat4 {
+        let element = self.parameter(name, &["transform"], report);
         element.map_or(DMat4::IDENTITY, |element| transform(element, &mut report.errors))
     }
 

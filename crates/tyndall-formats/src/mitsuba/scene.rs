@@ -8,7 +8,7 @@ use super::tree::{self, Element, Tree};
 use super::{camera, integrator, words};
 use crate::desc::{
     FileRef, GroupDesc, GroupId, InstanceDesc, IntegratorDesc, LengthUnit, LightDesc, MaterialDesc, MaterialId,
-    MediumDesc, MediumId, Options, SceneDesc, ShapeDesc,
+    MediumDesc, MediumId, Options, SceneDesc, ShapeDesc, TextureDesc, TextureId,
 };
 use crate::error::{ErrorList, SceneError};
 use crate::source::{SourceMap, Span, Spanned};
@@ -22,9 +22,12 @@ pub(super) struct Builder<'t> {
     /// Parts that are built, or were found wrong, by the element that says them.
     built_materials: HashMap<Span, Option<MaterialId>>,
     built_media: HashMap<Span, Option<MediumId>>,
+    pub(super) built_textures: HashMap<Span, Option<TextureId>>,
+    pub(super) texture_depth: u32,
     pub(super) built_groups: HashMap<Span, GroupId>,
     /// The materials of shapes that name none: that of a surface, and that of one that shines.
     pub(super) default_materials: [Option<MaterialId>; 2],
+    pub(super) textures: Vec<TextureDesc>,
     pub(super) materials: Vec<MaterialDesc>,
     pub(super) media: Vec<MediumDesc>,
     pub(super) shapes: Vec<ShapeDesc>,
@@ -44,8 +47,11 @@ pub(super) fn build(tree: &Tree, sources: &SourceMap, errors: ErrorList) -> (Opt
         report,
         built_materials: HashMap::new(),
         built_media: HashMap::new(),
+        built_textures: HashMap::new(),
+        texture_depth: 0,
         built_groups: HashMap::new(),
         default_materials: [None; 2],
+        textures: Vec::new(),
         materials: Vec::new(),
         media: Vec::new(),
         shapes: Vec::new(),
@@ -96,8 +102,11 @@ impl<'t> Builder<'t> {
         for medium in scene.nested("medium") {
             self.medium_id(medium.element);
         }
-        for texture in scene.nested("texture").into_iter().chain(scene.nested("volume")) {
-            words::plugin(texture.element, &mut self.report);
+        for texture in scene.nested("texture") {
+            self.texture(texture.element);
+        }
+        for volume in scene.nested("volume") {
+            words::plugin(volume.element, &mut self.report);
         }
         for shape in scene.nested("shape") {
             self.shape_or_instance(shape.element);
@@ -122,6 +131,7 @@ impl<'t> Builder<'t> {
             film,
             sampler,
             integrator: integrator?,
+            textures: std::mem::take(&mut self.textures),
             materials: std::mem::take(&mut self.materials),
             media: std::mem::take(&mut self.media),
             shapes: std::mem::take(&mut self.shapes),

@@ -8,7 +8,7 @@ use super::tree::Element;
 use super::words;
 use crate::desc::{
     GroupDesc, GroupId, InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MediumInterface, ShapeDesc, ShapeKind,
-    SpectrumDesc,
+    Varying,
 };
 use crate::error::SceneError;
 use crate::source::Spanned;
@@ -91,7 +91,7 @@ impl<'t> Builder<'t> {
         if let Some(id) = self.default_materials[usize::from(shines)] {
             return id;
         }
-        let reflectance = SpectrumDesc::Constant(if shines { 0.0 } else { 0.5 });
+        let reflectance = Varying::constant(if shines { 0.0 } else { 0.5 });
         let kind = MaterialKind::Diffuse { reflectance: Spanned::new(reflectance, element.span) };
         let id = self.add_material(MaterialDesc { span: element.span, name: None, kind, two_sided: false });
         self.default_materials[usize::from(shines)] = Some(id);

@@ -71,7 +71,7 @@ const PLUGINS: &[Plugins] = &[
             "serialized",
         ],
     },
-    Plugins { tag: "texture", known: &[], later: &["bitmap", "checkerboard", "mesh_attribute", "volume"] },
+    Plugins { tag: "texture", known: &["bitmap", "checkerboard"], later: &["mesh_attribute", "volume"] },
     Plugins { tag: "volume", known: &[], later: &["constvolume", "gridvolume"] },
 ];
 

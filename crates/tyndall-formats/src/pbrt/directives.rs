@@ -74,7 +74,7 @@ impl Reader {
             "ReverseOrientation" => self.state.now.reverse_orientation ^= true,
             "Sampler" => self.sampler(s),
             "Shape" => self.shape(s),
-            "Texture" => self.errors.push(SceneError::at(s.whole, "textures are not supported yet")),
+            "Texture" => self.texture(s),
             "TransformTimes" => self.ignore(s.whole, "nothing moves"),
             "WorldBegin" => self.world_begin(s.span),
             _ => self.transform(&s),
@@ -174,7 +174,7 @@ impl Reader {
             "light" => &mut defaults.light,
             "material" => &mut defaults.material,
             "medium" => &mut defaults.medium,
-            "texture" => return self.errors.push(SceneError::at(s.whole, "textures are not supported yet")),
+            "texture" => &mut defaults.texture,
             word => {
                 let error = SceneError::at(target.span, format!("Attribute knows no {}", quote(word)));
                 return self.errors.push(error.suggest(word, ["shape", "light", "material", "medium", "texture"]));

@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use super::Reader;
 use super::params::Params;
 use super::parser::Statement;
+use super::textures::Textures;
 use crate::desc::{
-    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc,
+    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc, Varying,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
@@ -26,7 +27,7 @@ const LATER_MATERIALS: [&str; 8] = [
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
     pub(super) fn pbrt_default(span: Span) -> Self {
-        let reflectance = Spanned::new(SpectrumDesc::Constant(0.5), span);
+        let reflectance = Spanned::new(Varying::constant(0.5), span);
         Self { span, name: None, kind: MaterialKind::Diffuse { reflectance }, two_sided: true }
     }
 }
@@ -70,9 +71,9 @@ impl Reader {
         mut p: Params,
     ) -> MaterialDesc {
         let made = match &*kind.value {
-            "diffuse" => diffuse(&mut p),
-            "conductor" => conductor(&mut p),
-            "dielectric" => dielectric(&mut p),
+            "diffuse" => diffuse(&mut p, &self.textures),
+            "conductor" => conductor(&mut p, &self.textures),
+            "dielectric" => dielectric(&mut p, &self.textures),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -86,13 +87,13 @@ impl Reader {
     }
 }
 
-fn diffuse(p: &mut Params) -> MaterialKind {
-    MaterialKind::Diffuse { reflectance: p.spectrum("reflectance", SpectrumDesc::Constant(0.5)) }
+fn diffuse(p: &mut Params, textures: &Textures) -> MaterialKind {
+    MaterialKind::Diffuse { reflectance: p.varying("reflectance", 0.5, textures) }
 }
 
-fn conductor(p: &mut Params) -> MaterialKind {
-    let reflectance = p.spectrum_opt("reflectance");
-    let given = [p.spectrum_opt("eta"), p.spectrum_opt("k")];
+fn conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
+    let reflectance = p.varying_opt("reflectance", textures);
+    let given = [p.varying_opt("eta", textures), p.varying_opt("k", textures)];
     let optics = match (reflectance, given) {
         (Some(reflectance), [None, None]) => ConductorOptics::Reflectance(reflectance),
         (Some(reflectance), _) => {
@@ -103,30 +104,31 @@ fn conductor(p: &mut Params) -> MaterialKind {
             ConductorOptics::Reflectance(reflectance)
         }
         (None, [eta, k]) => {
-            let copper = |which: &str| Spanned::new(SpectrumDesc::Named(which.into()), p.span);
+            let copper = |which: &str| Spanned::new(Varying::Everywhere(SpectrumDesc::Named(which.into())), p.span);
             ConductorOptics::EtaK {
                 eta: eta.unwrap_or_else(|| copper("metal-Cu-eta")),
                 k: k.unwrap_or_else(|| copper("metal-Cu-k")),
             }
         }
     };
-    MaterialKind::Conductor { optics, roughness: roughness(p), tint: None }
+    MaterialKind::Conductor { optics, roughness: roughness(p, textures), tint: None }
 }
 
-fn dielectric(p: &mut Params) -> MaterialKind {
+fn dielectric(p: &mut Params, textures: &Textures) -> MaterialKind {
     MaterialKind::Dielectric {
         eta: p.spectrum_or_float("eta", SpectrumDesc::Constant(1.5)),
-        roughness: roughness(p),
+        roughness: roughness(p, textures),
         reflection_tint: None,
         transmission_tint: None,
     }
 }
 
-fn roughness(p: &mut Params) -> RoughnessDesc {
-    let both = p.not_negative("roughness", 0.0).value;
+fn roughness(p: &mut Params, textures: &Textures) -> RoughnessDesc {
+    let smooth = Spanned::new(Varying::constant(0.0), p.span);
+    let both = p.amount("roughness", textures).unwrap_or(smooth);
     RoughnessDesc {
-        u: p.not_negative("uroughness", both).value,
-        v: p.not_negative("vroughness", both).value,
+        u: p.amount("uroughness", textures).unwrap_or_else(|| both.clone()),
+        v: p.amount("vroughness", textures).unwrap_or(both),
         remap: p.boolean("remaproughness", true).value,
         distribution: MicrofacetKind::Ggx,
     }

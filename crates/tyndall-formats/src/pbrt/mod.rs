@@ -26,6 +26,7 @@ mod shapes;
 mod state;
 #[cfg(test)]
 mod tests;
+mod textures;
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -40,6 +41,7 @@ use names::Registry;
 use parser::Parser;
 use settings::Settings;
 use state::State;
+use textures::Textures;
 
 /// The deepest chain of includes.
 const MAX_INCLUDE_DEPTH: usize = 32;
@@ -89,6 +91,7 @@ struct Reader {
     open: Vec<(PathBuf, Option<Span>)>,
     state: State,
     settings: Settings,
+    textures: Textures,
     materials: Registry<MaterialDesc>,
     default_material: Option<MaterialId>,
     media: Registry<MediumDesc>,
@@ -110,6 +113,7 @@ impl Reader {
             open: Vec::new(),
             state: State::default(),
             settings: Settings::default(),
+            textures: Textures::default(),
             materials: Registry::new("material"),
             default_material: None,
             media: Registry::new("medium"),
@@ -180,6 +184,7 @@ impl Reader {
             film: settings.film,
             sampler: settings.sampler,
             integrator: settings.integrator,
+            textures: self.textures.list,
             materials: self.materials.finish(&mut errors),
             media: self.media.finish(&mut errors),
             shapes: self.shapes,

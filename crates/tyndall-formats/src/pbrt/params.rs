@@ -8,7 +8,8 @@ use std::rc::Rc;
 
 use super::lexer::shorten;
 use super::param::{Param, ParamType};
-use crate::desc::{Ignored, SpectrumDesc};
+use super::textures::{Texels, Textures};
+use crate::desc::{Ignored, SpectrumDesc, Varying};
 use crate::error::{ErrorList, SceneError};
 use crate::source::{Span, Spanned};
 
@@ -94,11 +95,8 @@ impl Params {
             return Some(param);
         }
         if param.kind == ParamType::Texture {
-            self.errors.push(SceneError::at(param.declared, "textures are not supported yet").help(format!(
-                "give {} of {} as a constant",
-                quote(name),
-                self.owner
-            )));
+            let message = format!("{} of {} cannot be a texture", quote(name), self.owner);
+            self.errors.push(SceneError::at(param.declared, message).help("give it as a constant"));
         } else {
             let words: Vec<_> = types.iter().map(|t| format!("\"{} {name}\"", t.word())).collect();
             let message = format!("{} of {} cannot be of type {}", quote(name), self.owner, param.kind.word());
@@ -248,6 +246,16 @@ impl Params {
         }
     }
 
+    pub(super) fn vector(&mut self, name: &'static str, default: [f64; 3]) -> Spanned<[f64; 3]> {
+        match self.take_one(name, &[ParamType::Vector3]) {
+            Some(param) => {
+                let n = &param.values.numbers;
+                Spanned::new([n[0], n[1], n[2]], param.span)
+            }
+            None => Spanned::new(default, self.span),
+        }
+    }
+
     /// A list of tuples of `N` numbers in single precision, empty if not given.
     pub(super) fn tuples<const N: usize>(&mut self, name: &'static str, kinds: &[ParamType]) -> Spanned<Vec<[f32; N]>> {
         let Some(param) = self.take(name, kinds) else { return Spanned::new(Vec::new(), self.span) };
@@ -295,6 +303,64 @@ impl Params {
     /// A spectrum that may also be given as one number.
     pub(super) fn spectrum_or_float(&mut self, name: &'static str, default: SpectrumDesc) -> Spanned<SpectrumDesc> {
         self.spectrum_of(name, &[ParamType::Float, ParamType::Spectrum]).unwrap_or(Spanned::new(default, self.span))
+    }
+
+    /// A spectrum, or the texture of the name.
+    pub(super) fn varying_opt(&mut self, name: &'static str, textures: &Textures) -> Option<Spanned<Varying>> {
+        if let Some(found) = self.texture_opt(name, textures, Texels::Colours) {
+            return found;
+        }
+        self.spectrum_opt(name).map(|s| s.map(Varying::Everywhere))
+    }
+
+    /// As [`Params::varying_opt`], or else a constant.
+    pub(super) fn varying(&mut self, name: &'static str, default: f64, textures: &Textures) -> Spanned<Varying> {
+        let default = Spanned::new(Varying::constant(default), self.span);
+        self.varying_opt(name, textures).unwrap_or(default)
+    }
+
+    /// A number of at least 0, or the texture of the name.
+    pub(super) fn amount(&mut self, name: &'static str, textures: &Textures) -> Option<Spanned<Varying>> {
+        self.number(name, textures, |v| v >= 0.0)
+    }
+
+    /// A number, or the texture of the name.
+    pub(super) fn number(
+        &mut self,
+        name: &'static str,
+        textures: &Textures,
+        valid: impl Fn(f64) -> bool,
+    ) -> Option<Spanned<Varying>> {
+        if let Some(found) = self.texture_opt(name, textures, Texels::Numbers) {
+            return found;
+        }
+        let found = self.float_opt(name)?;
+        if !valid(found.value) {
+            let message = format!("{} of {} must be at least 0, not {}", quote(name), self.owner, found.value);
+            self.errors.push(SceneError::at(found.span, message));
+            return None;
+        }
+        Some(found.map(Varying::constant))
+    }
+
+    /// `None` if the parameter is no texture; `Some(None)` if it names none.
+    fn texture_opt(
+        &mut self,
+        name: &'static str,
+        textures: &Textures,
+        texels: Texels,
+    ) -> Option<Option<Spanned<Varying>>> {
+        if !self.list.iter().any(|p| p.name == name && p.kind == ParamType::Texture) {
+            return None;
+        }
+        let named = self.take_one(name, &[ParamType::Texture])?.values.strings.first().cloned()?;
+        match textures.find(&named, texels) {
+            Ok(id) => Some(Some(named.map(|_| Varying::Texture(id)))),
+            Err(error) => {
+                self.errors.push(error);
+                Some(None)
+            }
+        }
     }
 
     fn spectrum_of(&mut self, name: &'static str, kinds: &[ParamType]) -> Option<Spanned<SpectrumDesc>> {

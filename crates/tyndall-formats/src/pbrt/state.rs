@@ -35,6 +35,7 @@ pub(super) struct Defaults {
     pub(super) light: Rc<Vec<Param>>,
     pub(super) material: Rc<Vec<Param>>,
     pub(super) medium: Rc<Vec<Param>>,
+    pub(super) texture: Rc<Vec<Param>>,
 }
 
 /// A block that is open.

@@ -82,7 +82,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                     continue;
                 }
                 tally.surface_vertices += 1;
-                (Vertex::surface(surface, material.bsdf(w, lane), ray.dir), interface)
+                (Vertex::surface(surface, material.bsdf(&(&surface).into(), w, lane), ray.dir), interface)
             }
         };
 

@@ -87,7 +87,7 @@ impl Path {
                     }
                     material => {
                         tally.surface_vertices += 1;
-                        let bsdf = material.bsdf(&self.wavelengths, self.hero);
+                        let bsdf = material.bsdf(&(&hit).into(), &self.wavelengths, self.hero);
                         let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
                         self.scatter(scene, settings, &vertex, material.disperses(), sink, tally)
                     }

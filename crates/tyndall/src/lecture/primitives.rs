@@ -206,7 +206,7 @@ impl<'a> World<'a> {
         // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
         let distance = hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
         let hit = self.scene.geometry.interaction(&ray, &hit);
-        let bsdf = self.scene.material(&hit).bsdf(&self.wavelengths, self.lane);
+        let bsdf = self.scene.material(&hit).bsdf(&(&hit).into(), &self.wavelengths, self.lane);
         let from_outside = omega.dot(hit.ng) < 0.0;
         Some(Point { place: Place::Surface { hit, bsdf, from_outside }, inside, distance })
     }

@@ -28,6 +28,7 @@ pub mod rgb;
 pub mod sampled;
 pub mod srgb;
 pub mod uplift;
+pub mod uplift_table;
 pub mod wavelengths;
 
 pub use blackbody::Blackbody;

@@ -7,7 +7,7 @@ use tyndall::{
     film::Filter,
     integrator::Integrator,
     light::{AreaLight, ConstantEnvironment, EmitterShape, EnvironmentMap, Light, LightId, LightTable, Projection},
-    material::{Index, Material},
+    material::{Index, Material, Roughness},
     math::{Transform, Vec3},
     medium::{Homogeneous, MediumId, MediumInterface},
     phase::{Isotropic, Phase},
@@ -41,16 +41,16 @@ pub(crate) fn grey(v: f32) -> Spectrum {
 }
 
 pub(crate) fn diffuse(reflectance: f32) -> Material {
-    Material::Diffuse { reflectance: grey(reflectance), sides: Sides::Both }
+    Material::Diffuse { reflectance: reflectance.into(), sides: Sides::Both }
 }
 
 pub(crate) fn glass(eta: f32, alpha: f32) -> Material {
     Material::Dielectric {
         eta: Index::Constant(eta),
-        alpha: [alpha; 2],
+        alpha: Roughness::constant([alpha; 2]),
         distribution: Distribution::TrowbridgeReitz,
-        reflection_tint: grey(1.0),
-        transmission_tint: grey(1.0),
+        reflection_tint: 1.0.into(),
+        transmission_tint: 1.0.into(),
     }
 }
 

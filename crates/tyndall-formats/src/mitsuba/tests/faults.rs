@@ -70,8 +70,8 @@ const FAULTS: &[(&str, &str)] = &[
         r#"2:53: "reflectance" must be in [0, 1], not 0.5 0.5 1.5"#,
     ),
     (
-        r#"<bsdf type="diffuse"><texture name="reflectance" type="bitmap"/></bsdf>"#,
-        r#"2:37: a <texture> for "reflectance" is not known yet | write a <rgb>"#,
+        r#"<bsdf type="diffuse"><texture name="reflectance" type="volume"/></bsdf>"#,
+        r#"2:63: the texture "volume" is not known yet | known are "bitmap", "checkerboard""#,
     ),
     (
         r#"<shape type="cube"><boolean name="flip_normals" value="yes"/></shape>"#,

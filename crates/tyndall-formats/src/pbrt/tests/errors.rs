@@ -64,10 +64,7 @@ fn what_pbrt_knows_and_this_reader_does_not_yet_is_said_to_be_so() {
             "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\"",
             "1:50 the medium \"nanovdb\" is not supported yet [supported are \"homogeneous\"]",
         ),
-        (
-            "Material \"diffuse\" \"texture reflectance\" \"wood\"",
-            "1:31 textures are not supported yet [give \"reflectance\" of material \"diffuse\" as a constant]",
-        ),
+        ("Material \"diffuse\" \"texture reflectance\" \"wood\"", "1:53 no spectrum texture is called \"wood\""),
         (
             "Shape \"sphere\" \"float phimax\" 90",
             "1:27 \"phimax\" of shape \"sphere\" is not supported yet [leave it out]",

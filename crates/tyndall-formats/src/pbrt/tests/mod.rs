@@ -3,6 +3,7 @@
 mod errors;
 mod fuzz;
 mod scenes;
+mod textures;
 mod values;
 
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::{parse, scene, world};
 use crate::desc::{
     Coefficients, ConductorOptics, CropDesc, EnvironmentMapping, FilterDesc, FovAxis, LengthUnit, LightKind, Magnitude,
-    MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc,
+    MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc, Varying,
 };
 use crate::load;
 
@@ -38,13 +38,13 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
     let [default, diffuse, conductor, dielectric, interface] = &desc.materials[..] else { panic!() };
     for material in [default, diffuse] {
         let MaterialKind::Diffuse { reflectance } = &material.kind else { panic!() };
-        assert_eq!((&reflectance.value, material.two_sided), (&SpectrumDesc::Constant(0.5), true));
+        assert_eq!((&reflectance.value, material.two_sided), (&Varying::constant(0.5), true));
     }
     let MaterialKind::Conductor { optics: ConductorOptics::EtaK { eta, k }, .. } = &conductor.kind else { panic!() };
-    assert_eq!(eta.value, SpectrumDesc::Named("metal-Cu-eta".into()));
-    assert_eq!(k.value, SpectrumDesc::Named("metal-Cu-k".into()));
+    assert_eq!(eta.value, SpectrumDesc::Named("metal-Cu-eta".into()).into());
+    assert_eq!(k.value, SpectrumDesc::Named("metal-Cu-k".into()).into());
     let MaterialKind::Dielectric { eta, roughness, .. } = &dielectric.kind else { panic!() };
-    assert_eq!((&eta.value, roughness.alpha()), (&SpectrumDesc::Constant(1.5), [0.0, 0.0]));
+    assert_eq!((&eta.value, roughness.alpha()), (&SpectrumDesc::Constant(1.5), Some([0.0; 2])));
     assert_eq!(interface.kind, MaterialKind::Interface);
 
     let medium = &desc.media[0];
@@ -162,14 +162,14 @@ fn spectra_keep_the_form_in_which_they_were_written() {
         MaterialKind::Diffuse { reflectance } => reflectance.value.clone(),
         other => panic!("{other:?}"),
     };
-    assert_eq!(reflectance(0), SpectrumDesc::Samples { lambda: vec![400.0, 700.0], values: vec![0.1, 0.9] });
-    assert_eq!(reflectance(2), SpectrumDesc::File(PathBuf::from("skin.spd")));
+    assert_eq!(reflectance(0), SpectrumDesc::Samples { lambda: vec![400.0, 700.0], values: vec![0.1, 0.9] }.into());
+    assert_eq!(reflectance(2), SpectrumDesc::File(PathBuf::from("skin.spd")).into());
     let MaterialKind::Dielectric { eta, .. } = &desc.materials[1].kind else { panic!() };
     assert_eq!(eta.value, SpectrumDesc::Named("glass-BK7".into()));
     let gold = desc.material(desc.shapes[0].material.value).unwrap();
     assert_eq!(gold.name.as_deref(), Some("gold"));
     let MaterialKind::Conductor { roughness, .. } = &gold.kind else { panic!() };
-    assert_eq!(roughness.alpha(), [0.2, 0.2]);
+    assert_eq!(roughness.alpha(), Some([0.2; 2]));
 }
 
 #[test]

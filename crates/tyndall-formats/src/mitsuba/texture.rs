@@ -1,0 +1,118 @@
+//! `<texture>`: `bitmap` and `checkerboard`, and where a texture may stand for a number or a colour.
+//!
+//! Mitsuba's v runs downwards on a bitmap; ours runs upwards, so the mapping turns it round.
+
+use glam::DMat4;
+
+use super::object::{Measure, Object};
+use super::scene::Builder;
+use super::tree::Element;
+use super::words;
+use crate::desc::{Board, Encoding, ImageDesc, MappingDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind};
+use crate::error::SceneError;
+use crate::source::Spanned;
+
+/// The deepest nesting of textures in textures.
+const MAX_DEPTH: u32 = 32;
+
+impl<'t> Builder<'t> {
+    /// A number, a colour or a texture of this name.
+    pub(super) fn varying(
+        &mut self,
+        object: &mut Object<'t>,
+        name: &'static str,
+        measure: Measure,
+    ) -> Option<Spanned<Varying>> {
+        match object.object_of(name, "texture") {
+            Some(child) => {
+                let id = self.texture(child.element)?;
+                Some(Spanned::new(Varying::Texture(id), child.at.span))
+            }
+            None => object.spectrum(name, measure, &mut self.report).map(|found| found.map(Varying::Everywhere)),
+        }
+    }
+
+    /// As [`Builder::varying`], or else a constant.
+    pub(super) fn varying_or(
+        &mut self,
+        object: &mut Object<'t>,
+        name: &'static str,
+        measure: Measure,
+        default: f64,
+    ) -> Spanned<Varying> {
+        let found = self.varying(object, name, measure);
+        found.unwrap_or(Spanned::new(Varying::constant(default), object.element.span))
+    }
+
+    /// The texture of an element, built once.
+    pub(super) fn texture(&mut self, element: &'t Element) -> Option<TextureId> {
+        if let Some(&built) = self.built_textures.get(&element.span) {
+            return built;
+        }
+        // A texture that contains itself finds nothing here, and is reported where it is nested too deep.
+        self.built_textures.insert(element.span, None);
+        self.texture_depth += 1;
+        let kind = if self.texture_depth > MAX_DEPTH {
+            let message = format!("textures are nested more than {MAX_DEPTH} deep");
+            self.report.errors.push(SceneError::at(element.span, message));
+            None
+        } else {
+            self.texture_kind(element)
+        };
+        self.texture_depth -= 1;
+        let id = kind.map(|kind| {
+            let name = element.attribute("id").map(|id| id.value.clone());
+            self.textures.push(TextureDesc { span: element.span, name, kind });
+            TextureId(self.textures.len() as u32 - 1)
+        });
+        self.built_textures.insert(element.span, id);
+        id
+    }
+
+    fn texture_kind(&mut self, element: &'t Element) -> Option<TextureKind> {
+        let plugin = words::plugin(element, &mut self.report)?;
+        let mut object = self.object(element);
+        let to_uv = object.named_transform("to_uv", &mut self.report);
+        let kind = match plugin {
+            "bitmap" => self.bitmap(&mut object, to_uv).map(TextureKind::Image),
+            _ => {
+                let of = [("color0", 0.4), ("color1", 0.2)]
+                    .map(|(name, default)| self.varying_or(&mut object, name, Measure::Part, default));
+                // Its fields are half a unit wide.
+                let [s, t] = rows(to_uv).map(|row| row.map(|v| 2.0 * v));
+                Some(TextureKind::Checkerboard { of, board: Board::Squares(MappingDesc::Uv([s, t])) })
+            }
+        };
+        object.finish(&mut self.report);
+        kind
+    }
+
+    fn bitmap(&mut self, object: &mut Object<'t>, to_uv: DMat4) -> Option<ImageDesc> {
+        let report = &mut self.report;
+        let smooth = object.choice("filter_type", &[("bilinear", true), ("nearest", false)], report);
+        let wraps = [("repeat", WrapKind::Repeat), ("mirror", WrapKind::Mirror), ("clamp", WrapKind::Clamp)];
+        let wrap = object.choice("wrap_mode", &wraps, report);
+        let raw = object.flag("raw", false, report);
+        object.ignore(&["format", "accel"], "pictures are kept in single precision", report);
+        let Some(name) = object.string("filename", report) else {
+            let error = SceneError::at(object.element.span, "the texture \"bitmap\" lacks a \"filename\"");
+            report.errors.push(error);
+            return None;
+        };
+        let [s, [a, b, c]] = rows(to_uv);
+        Some(ImageDesc {
+            path: self.file(name),
+            mapping: MappingDesc::Uv([s, [-a, -b, 1.0 - c]]),
+            wrap,
+            smooth,
+            scale: 1.0,
+            invert: false,
+            encoding: if raw { Encoding::Linear } else { Encoding::Srgb },
+        })
+    }
+}
+
+/// The rows that u and v see of a transform in space: what it does to the xy plane.
+fn rows(m: DMat4) -> [[f64; 3]; 2] {
+    [[m.x_axis.x, m.y_axis.x, m.w_axis.x], [m.x_axis.y, m.y_axis.y, m.w_axis.y]]
+}

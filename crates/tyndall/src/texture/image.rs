@@ -1,0 +1,186 @@
+//! Pictures as textures.
+//!
+//! Row 0 is the top of the picture, at t = 1: t runs upwards, as in pbrt and as Mitsuba has it after its flip of v. Between
+//! the centres of pixels values are linear ([`Interpolation::Bilinear`]) or those of the nearest.
+//!
+//! In spectral mode a colour becomes a smooth spectrum by interpolation in the table of [`crate::spectrum::uplift_table`].
+
+use std::sync::Arc;
+
+use super::{TexturePoint, mapping::Mapping2};
+use crate::{
+    math::Vec2,
+    spectrum::{Lanes, Wavelengths, srgb, uplift_table},
+};
+
+/// Pixels in linear sRGB, rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Number of columns, at least 1.
+    pub width: u32,
+    /// Number of rows, at least 1.
+    pub height: u32,
+    /// Row by row.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+/// What is beyond the edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wrap {
+    /// The picture again.
+    Repeat,
+    /// The picture in a mirror.
+    Mirror,
+    /// The pixel at the edge.
+    Clamp,
+    /// Nothing: 0.
+    Black,
+}
+
+/// What is between the centres of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The nearest pixel.
+    Nearest,
+    /// A weighted mean of the four around.
+    Bilinear,
+}
+
+/// A picture on a surface: a reflectance or a number.
+#[derive(Debug, Clone)]
+pub struct ImageTexture {
+    /// The picture; many textures may show one.
+    pub picture: Arc<Picture>,
+    /// To the unit square of the picture.
+    pub mapping: Mapping2,
+    /// Beyond its edges.
+    pub wrap: Wrap,
+    /// Between its pixels.
+    pub interpolation: Interpolation,
+    /// A factor on every value [1].
+    pub scale: f32,
+    /// Whether a value `v` stands for `1 − v`, after the factor.
+    pub invert: bool,
+    /// The greatest value, for what must be a share of light [1].
+    pub most: f32,
+}
+
+impl ImageTexture {
+    /// Linear sRGB at a point.
+    #[inline]
+    pub fn rgb(&self, at: &TexturePoint) -> [f32; 3] {
+        let st = self.mapping.at(at);
+        let found = self.picture.look_up(Vec2::new(st.x, 1.0 - st.y), self.wrap, self.interpolation);
+        found.map(|v| {
+            let v = v * self.scale;
+            (if self.invert { 1.0 - v } else { v }).clamp(0.0, self.most)
+        })
+    }
+
+    /// The lanes of a path at a point.
+    #[inline]
+    pub fn eval(&self, at: &TexturePoint, wavelengths: &Wavelengths) -> Lanes {
+        reflectance(self.rgb(at), wavelengths)
+    }
+}
+
+/// A colour that filters light, in the lanes of a path.
+pub(super) fn reflectance(rgb: [f32; 3], wavelengths: &Wavelengths) -> Lanes {
+    match wavelengths {
+        Wavelengths::Rgb => Lanes::rgb(rgb[0], rgb[1], rgb[2]),
+        Wavelengths::Mono => Lanes::splat(srgb::luminance(rgb)),
+        Wavelengths::Spectral { lambda, .. } => {
+            let scale = rgb.into_iter().fold(1.0, f32::max);
+            let sigmoid = uplift_table::look_up(rgb.map(|v| v / scale));
+            Lanes::new(lambda.map(|l| scale * sigmoid.at(l)))
+        }
+    }
+}
+
+impl Picture {
+    /// The value at a place, (0, 0) the upper left corner and (1, 1) the lower right one.
+    #[inline]
+    pub fn look_up(&self, at: Vec2, wrap: Wrap, interpolation: Interpolation) -> [f32; 3] {
+        if !at.is_finite() {
+            return [0.0; 3];
+        }
+        let x = f64::from(at.x) * f64::from(self.width);
+        let y = f64::from(at.y) * f64::from(self.height);
+        if interpolation == Interpolation::Nearest {
+            return self.pixel(x.floor() as i64, y.floor() as i64, wrap);
+        }
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (column, row) = (x.floor(), y.floor());
+        let (dx, dy) = ((x - column) as f32, (y - row) as f32);
+        let (column, row) = (column as i64, row as i64);
+        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.pixel(column + i, row + j, wrap));
+        let weights = [(1.0 - dx) * (1.0 - dy), dx * (1.0 - dy), (1.0 - dx) * dy, dx * dy];
+        std::array::from_fn(|c| (0..4).map(|i| weights[i] * corners[i][c]).sum())
+    }
+
+    fn pixel(&self, column: i64, row: i64, wrap: Wrap) -> [f32; 3] {
+        match (wrap.index(column, self.width), wrap.index(row, self.height)) {
+            (Some(x), Some(y)) => self.pixels[y * self.width as usize + x],
+            _ => [0.0; 3],
+        }
+    }
+}
+
+impl Wrap {
+    fn index(self, i: i64, size: u32) -> Option<usize> {
+        let size = i64::from(size);
+        let index = match self {
+            Self::Repeat => i.rem_euclid(size),
+            Self::Mirror => {
+                let i = i.rem_euclid(2 * size);
+                i.min(2 * size - 1 - i)
+            }
+            Self::Clamp => i.clamp(0, size - 1),
+            Self::Black => return (0..size).contains(&i).then_some(i as usize),
+        };
+        Some(index as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+
+    /// 2 × 2 pixels: 0 1 above 2 3.
+    fn four() -> Picture {
+        Picture { width: 2, height: 2, pixels: [0.0, 1.0, 2.0, 3.0].map(|v| [v; 3]).to_vec() }
+    }
+
+    #[test]
+    fn beyond_the_edge_comes_what_the_wrapping_says() {
+        let at = |x: f32, wrap| four().look_up(Vec2::new(x, 0.25), wrap, Interpolation::Nearest)[0];
+        assert_eq!([at(0.25, Wrap::Repeat), at(0.75, Wrap::Repeat), at(1.25, Wrap::Repeat)], [0.0, 1.0, 0.0]);
+        assert_eq!([at(1.25, Wrap::Mirror), at(-0.25, Wrap::Mirror), at(-0.75, Wrap::Mirror)], [1.0, 0.0, 1.0]);
+        assert_eq!([at(7.0, Wrap::Clamp), at(-7.0, Wrap::Clamp), at(1.25, Wrap::Black)], [1.0, 0.0, 0.0]);
+    }
+
+    /// Half way between the four centres lies their mean, 1.5; at a centre the pixel itself.
+    #[test]
+    fn between_the_centres_of_pixels_values_are_linear() {
+        let at = |x: f32, y: f32| four().look_up(Vec2::new(x, y), Wrap::Clamp, Interpolation::Bilinear)[0];
+        assert_eq!([at(0.5, 0.5), at(0.25, 0.25), at(0.75, 0.75)], [1.5, 0.0, 3.0]);
+        assert_eq!(at(0.5, 0.25), 0.5);
+    }
+
+    #[test]
+    fn t_runs_upwards_and_inverted_values_are_one_less_the_value() {
+        let texture = |invert| ImageTexture {
+            picture: Arc::new(four()),
+            mapping: Mapping2::UV,
+            wrap: Wrap::Repeat,
+            interpolation: Interpolation::Nearest,
+            scale: 0.25,
+            invert,
+            most: 1.0,
+        };
+        let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v), n: Vec3::Z };
+        assert_eq!(texture(false).rgb(&at(0.25, 0.25))[0], 0.5); // lower left: 2
+        assert_eq!(texture(true).rgb(&at(0.75, 0.25))[0], 0.25); // lower right: 3
+    }
+}
