@@ -100,7 +100,8 @@ mod tests {
     /// 616.8 nm 0.30 + 3.21i. Films differ by several hundredths in n and a tenth in k.
     #[test]
     fn noble_metals_agree_with_another_measurement() {
-        for (metal, lambda, eta, k) in [("Ag", 563.6, 0.06, 3.75), ("Au", 563.6, 0.31, 2.88), ("Cu", 616.8, 0.30, 3.21)] {
+        for (metal, lambda, eta, k) in [("Ag", 563.6, 0.06, 3.75), ("Au", 563.6, 0.31, 2.88), ("Cu", 616.8, 0.30, 3.21)]
+        {
             let found = [at(&format!("metal-{metal}-eta"), lambda), at(&format!("metal-{metal}-k"), lambda)];
             assert!((found[0] - eta).abs() < 0.12 && (found[1] - k).abs() < 0.35, "{metal}: {found:?}");
         }

@@ -3,10 +3,7 @@
 use tyndall::{
     bsdf::{Sides, microfacet::Distribution},
     material::{Index, Material, Metal},
-    spectrum::{
-        Spectrum,
-        glass::Glass,
-    },
+    spectrum::{Spectrum, glass::Glass},
 };
 
 use super::{Builder, spectra::Measure};
@@ -45,10 +42,9 @@ impl Builder<'_> {
 
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {
         match optics {
-            ConductorOptics::EtaK { eta, k } => Some(Metal::Index {
-                eta: self.spectrum(eta, Measure::Index)?,
-                k: self.spectrum(k, Measure::Index)?,
-            }),
+            ConductorOptics::EtaK { eta, k } => {
+                Some(Metal::Index { eta: self.spectrum(eta, Measure::Index)?, k: self.spectrum(k, Measure::Index)? })
+            }
             ConductorOptics::Reflectance(r) => Some(Metal::Reflectance(self.spectrum(r, Measure::Share)?)),
             ConductorOptics::Mirror => Some(Metal::Mirror),
         }

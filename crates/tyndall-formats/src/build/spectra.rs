@@ -102,17 +102,18 @@ impl Builder<'_> {
             SpectrumDesc::Samples { lambda, values } => Some(Table { lambda: single(lambda), values: single(values) }),
             SpectrumDesc::Named(name) => match named(name) {
                 Some(table) => Some(table),
-                None => self.fail(
-                    SceneError::at(span, format!("no spectrum is called \"{name}\"")).suggest(name, names()),
-                ),
+                None => {
+                    self.fail(SceneError::at(span, format!("no spectrum is called \"{name}\"")).suggest(name, names()))
+                }
             },
-            SpectrumDesc::File(path) => match read_spectrum(path) {
-                Ok(table) => Some(table),
-                Err(problem) => self.fail(
-                    SceneError::at(span, format!("{}: {problem}", path.display()))
-                        .help("a spectrum file holds a wavelength in nm and a value on each line, and comments after #"),
-                ),
-            },
+            SpectrumDesc::File(path) => {
+                match read_spectrum(path) {
+                    Ok(table) => Some(table),
+                    Err(problem) => self.fail(SceneError::at(span, format!("{}: {problem}", path.display())).help(
+                        "a spectrum file holds a wavelength in nm and a value on each line, and comments after #",
+                    )),
+                }
+            }
             SpectrumDesc::Constant(_) | SpectrumDesc::Rgb(_) | SpectrumDesc::Blackbody { .. } => None,
         }
     }
@@ -158,8 +159,16 @@ fn named(name: &str) -> Option<Table> {
 
 /// The names in pbrt's spelling.
 fn names() -> Vec<&'static str> {
-    let glasses =
-        ["glass-BK7", "glass-BAF10", "glass-FK51A", "glass-LASF9", "glass-F5", "glass-F10", "glass-F11", "stdillum-D65"];
+    let glasses = [
+        "glass-BK7",
+        "glass-BAF10",
+        "glass-FK51A",
+        "glass-LASF9",
+        "glass-F5",
+        "glass-F10",
+        "glass-F11",
+        "stdillum-D65",
+    ];
     spectra::names().chain(glasses).collect()
 }
 

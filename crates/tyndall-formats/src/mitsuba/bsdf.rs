@@ -1,5 +1,7 @@
 //! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `null`, and `twosided` around one that reflects.
 
+use tyndall_optics::spectra;
+
 use super::object::{Measure, Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
@@ -34,9 +36,6 @@ const INDICES: &[(&str, f64)] = &[
     ("pet", 1.5750),
     ("diamond", 2.419),
 ];
-
-/// Metals whose indices are known by name.
-const METALS: &[&str] = &["Ag", "Al", "Au", "Cu"];
 
 impl<'t> Builder<'t> {
     pub(super) fn bsdf(&mut self, element: &'t Element) -> Option<MaterialDesc> {
@@ -147,6 +146,11 @@ fn roughness(rough: bool, object: &mut Object, report: &mut Report) -> Roughness
     RoughnessDesc { u, v, remap: false, distribution }
 }
 
+/// Whether the complex index of this substance is known.
+fn is_metal(name: &str) -> bool {
+    spectra::named(&format!("metal-{name}-eta")).is_some()
+}
+
 /// By `eta` and `k`, by the name of a `material`, or a perfect mirror.
 fn conductor(object: &mut Object, report: &mut Report) -> Option<ConductorOptics> {
     let material = object.string("material", report);
@@ -156,13 +160,13 @@ fn conductor(object: &mut Object, report: &mut Report) -> Option<ConductorOptics
         (Some(eta), Some(k), None) => Some(ConductorOptics::EtaK { eta, k }),
         (None, None, None) => Some(ConductorOptics::Mirror),
         (None, None, Some(material)) if material.value == "none" => Some(ConductorOptics::Mirror),
-        (None, None, Some(material)) if METALS.contains(&material.value) => {
+        (None, None, Some(material)) if is_metal(material.value) => {
             let data = |what| material.map(|metal| SpectrumDesc::Named(format!("metal-{metal}-{what}")));
             Some(ConductorOptics::EtaK { eta: data("eta"), k: data("k") })
         }
         (None, None, Some(material)) => {
             let error = SceneError::at(material.span, format!("the metal \"{}\" is not known", material.value));
-            report.errors.push(error.suggest(material.value, METALS.iter().copied().chain(["none"])));
+            report.errors.push(error.suggest(material.value, spectra::metals().chain(["none"]).collect::<Vec<_>>()));
             None
         }
         _ => {
