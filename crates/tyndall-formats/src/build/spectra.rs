@@ -224,4 +224,49 @@ mod tests {
             assert_eq!(parse_spectrum(text).err().as_deref(), Some(problem));
         }
     }
+
+    fn built(world: &str) -> Result<tyndall::scene::Scene, String> {
+        let (desc, sources) =
+            crate::pbrt::parse(Path::new("scene.pbrt"), &format!("WorldBegin {world}")).map_err(|e| e.to_string())?;
+        let scene = super::super::build(&desc, sources, tyndall::spectrum::ColorMode::Rgb);
+        scene.map(|(scene, _)| scene).map_err(|e| e.to_string())
+    }
+
+    /// What Mitsuba 3.9.1 makes of its gold in RGB (`spectrum_list_to_srgb` of `data/ior/Au.*.spd`, 1000 steps over its 5 nm
+    /// observer; ours is exact over 1 nm).
+    #[test]
+    fn gold_has_the_indices_that_mitsuba_sees() {
+        let scene =
+            built(r#"Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" Shape "sphere""#)
+                .unwrap();
+        let metal = scene.materials.iter().find_map(|m| match m {
+            tyndall::material::Material::Conductor { metal: tyndall::material::Metal::Index { eta, k }, .. } => {
+                Some([eta.rgb(), k.rgb()])
+            }
+            _ => None,
+        });
+        let expected = [[0.143_037f32, 0.375_306, 1.442_04], [3.982_99, 2.385_56, 1.603_36]];
+        let found = metal.unwrap();
+        for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
+            assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
+        }
+    }
+
+    /// pbrt divides every spectrum of light but RGB by its luminance, so that `scale` is the luminance.
+    #[test]
+    fn a_light_of_a_named_spectrum_is_as_bright_as_its_scale_says() {
+        for name in ["stdillum-A", "stdillum-F11", "stdillum-D65", "illum-acesD60", "glass-BK7"] {
+            let scene = built(&format!(r#"LightSource "point" "spectrum I" "{name}" "float scale" 3"#)).unwrap();
+            let tyndall::light::Light::Point(light) = &scene.lights.lights[0] else { panic!() };
+            assert!((light.intensity.luminance() - 3.0).abs() < 1e-3, "{name}: {}", light.intensity.luminance());
+        }
+    }
+
+    #[test]
+    fn names_that_are_near_are_suggested() {
+        let error = built(r#"Material "conductor" "spectrum eta" "metal-Gold-eta" Shape "sphere""#).err().unwrap();
+        assert!(error.contains("no spectrum is called \"metal-Gold-eta\""), "{error}");
+        let error = built(r#"LightSource "point" "spectrum I" "stdilum-A""#).err().unwrap();
+        assert!(error.contains("stdillum-A"), "{error}");
+    }
 }

@@ -1,4 +1,4 @@
-//! Triangle meshes as they stand in files: PLY and OBJ.
+//! Triangle meshes as they stand in files: PLY, OBJ and Mitsuba's serialized.
 //!
 //! A file is read whole, and nothing is allocated that its own bytes could not fill, so that a header which promises
 //! 10¹² vertices is an error and not an exhausted machine. What a reader returns has passed [`TriangleMesh::checked`].
@@ -6,6 +6,7 @@
 mod normals;
 mod obj;
 mod ply;
+mod serialized;
 
 use std::path::{Path, PathBuf};
 
@@ -15,6 +16,7 @@ use crate::gzip;
 
 pub use obj::{parse_obj, read_obj};
 pub use ply::{parse_ply, read_ply, write_ply};
+pub use serialized::{parse_serialized, read_serialized};
 
 /// The longest mesh that a compressed file may hold \[bytes\]: some 50 million triangles.
 const MAX_INFLATED_BYTES: u64 = 1 << 31;
