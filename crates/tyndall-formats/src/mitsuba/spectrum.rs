@@ -132,13 +132,11 @@ fn typed(object: &mut Object, kind: &str, name: &str, measure: Measure, report: 
         "d65" if measure == Measure::Light => {
             let scale = object.float("scale", |s| s >= 0.0, "at least 0", report).map_or(1.0, |s| s.value);
             let colour = object.spectrum("color", Measure::Light, report).map(|c| c.value);
-            match colour.unwrap_or(SpectrumDesc::Rgb([1.0; 3])) {
-                SpectrumDesc::Rgb(rgb) => Some(SpectrumDesc::Rgb(rgb.map(|c| c * scale))),
-                _ => {
-                    report.errors.push(SceneError::at(span, "the colour of \"d65\" is an <rgb>"));
-                    None
-                }
+            if let SpectrumDesc::Rgb(rgb) = colour.unwrap_or(SpectrumDesc::Rgb([1.0; 3])) {
+                return Some(SpectrumDesc::Rgb(rgb.map(|c| c * scale)));
             }
+            report.errors.push(SceneError::at(span, "the colour of \"d65\" is an <rgb>"));
+            None
         }
         "srgb" => Some(object.spectrum("color", measure, report)?.value),
         "regular" | "irregular" => {

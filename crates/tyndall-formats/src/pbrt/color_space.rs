@@ -85,7 +85,7 @@ fn of_chromaticity([x, y]: [f64; 2]) -> DVec3 {
 }
 
 fn matrices(primaries: [[f64; 2]; 3], white: DVec3) -> Matrices {
-    // Primaries without luminance (blue of ACES is nearly so) have no of_chromaticity: columns are (x, y, z) instead.
+    // Green of ACES has y = 1 and its blue a negative y: columns are (x, y, z), which divide by nothing.
     let [r, g, b] = primaries.map(|[x, y]| DVec3::new(x, y, 1.0 - x - y));
     let unscaled = DMat3::from_cols(r, g, b);
     let light = unscaled * DMat3::from_diagonal(unscaled.inverse() * white);

@@ -145,13 +145,12 @@ impl Reader {
 
     fn color_space(&mut self, s: &Statement<'_>) {
         let word = &*s.names[0].value;
-        match ColorSpace::NAMES.into_iter().find(|(name, _)| *name == word) {
-            Some((_, space)) => self.state.now.color_space = space,
-            None => {
-                let message = format!("there is no colour space {}", quote(word));
-                let known = ColorSpace::NAMES.map(|(name, _)| name);
-                self.errors.push(SceneError::at(s.names[0].span, message).suggest(word, known));
-            }
+        if let Some((_, space)) = ColorSpace::NAMES.into_iter().find(|(name, _)| *name == word) {
+            self.state.now.color_space = space;
+        } else {
+            let message = format!("there is no colour space {}", quote(word));
+            let known = ColorSpace::NAMES.map(|(name, _)| name);
+            self.errors.push(SceneError::at(s.names[0].span, message).suggest(word, known));
         }
     }
 
