@@ -153,13 +153,19 @@ fn is_metal(name: &str) -> bool {
 
 /// By `eta` and `k`, by the name of a `material`, or a perfect mirror.
 fn conductor(object: &mut Object, report: &mut Report) -> Option<ConductorOptics> {
-    let material = object.string("material", report);
+    let material = object.string("material", report).filter(|m| m.value != "none");
     let eta = object.spectrum("eta", Measure::Amount, report);
     let k = object.spectrum("k", Measure::Amount, report);
     match (eta, k, material) {
-        (Some(eta), Some(k), None) => Some(ConductorOptics::EtaK { eta, k }),
         (None, None, None) => Some(ConductorOptics::Mirror),
-        (None, None, Some(material)) if material.value == "none" => Some(ConductorOptics::Mirror),
+        (eta, k, None) => {
+            // Mitsuba's defaults: the index i reflects all.
+            let default = |v| Spanned::new(SpectrumDesc::Constant(v), object.element.span);
+            Some(ConductorOptics::EtaK {
+                eta: eta.unwrap_or_else(|| default(0.0)),
+                k: k.unwrap_or_else(|| default(1.0)),
+            })
+        }
         (None, None, Some(material)) if is_metal(material.value) => {
             let data = |what| material.map(|metal| SpectrumDesc::Named(format!("metal-{metal}-{what}")));
             Some(ConductorOptics::EtaK { eta: data("eta"), k: data("k") })
@@ -171,7 +177,7 @@ fn conductor(object: &mut Object, report: &mut Report) -> Option<ConductorOptics
         }
         _ => {
             let error =
-                SceneError::at(object.element.span, "a conductor has either a \"material\", or both \"eta\" and \"k\"");
+                SceneError::at(object.element.span, "a conductor has either a \"material\", or \"eta\" and \"k\"");
             report.errors.push(error);
             None
         }

@@ -297,3 +297,16 @@ fn a_medium_takes_constant_volumes_and_rayleigh_scattering() {
     let Coefficients::ExtinctionAlbedo { sigma_t, .. } = &medium.coefficients else { panic!() };
     assert_eq!((&sigma_t.value, medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), PhaseDesc::Rayleigh));
 }
+
+/// Mitsuba's conductor without a material has eta = 0 and k = 1 unless told.
+#[test]
+fn a_conductor_may_leave_out_one_part_of_its_index() {
+    let optics = |parameters: &str| match material(&format!("<bsdf type=\"conductor\">{parameters}</bsdf>")).kind {
+        MaterialKind::Conductor { optics: ConductorOptics::EtaK { eta, k }, .. } => (eta.value, k.value),
+        other => panic!("{other:?}"),
+    };
+    let constant = SpectrumDesc::Constant;
+    assert_eq!(optics("<float name=\"eta\" value=\"2\"/>"), (constant(2.0), constant(1.0)));
+    let k = "<string name=\"material\" value=\"none\"/><float name=\"k\" value=\"3\"/>";
+    assert_eq!(optics(k), (constant(0.0), constant(3.0)));
+}
