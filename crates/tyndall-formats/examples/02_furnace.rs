@@ -33,6 +33,7 @@ fn ball(albedo: f32) -> Result<Scene, Box<dyn std::error::Error>> {
     let medium = Homogeneous {
         sigma_a: Spectrum::constant(5.0 * (1.0 - albedo)),
         sigma_s: Spectrum::constant(5.0 * albedo),
+        emission: None,
         phase: Phase::henyey_greenstein(0.5)?,
     };
     let interface = Some(MediumInterface { inside: Some(MediumId(0)), outside: None });

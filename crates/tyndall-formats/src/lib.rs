@@ -11,6 +11,7 @@ pub mod build;
 pub mod desc;
 pub mod error;
 pub mod film;
+mod gzip;
 pub mod image;
 pub mod mesh;
 pub mod mitsuba;

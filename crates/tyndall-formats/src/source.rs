@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::error::SceneError;
+use crate::gzip;
 
 /// The largest scene file that is read \[bytes\]. A `u32` offset reaches further.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
@@ -119,6 +120,9 @@ impl SourceMap {
             return Err(error(format!("{shown} is larger than 1 GiB"))
                 .help("keep large meshes in PLY files and name them in the scene"));
         }
+        if gzip::is_gzip(path) {
+            bytes = gzip::inflate(&bytes, MAX_FILE_BYTES).map_err(|problem| error(format!("{shown} {problem}")))?;
+        }
         let text = String::from_utf8(bytes).map_err(|e| {
             let at = e.utf8_error().valid_up_to();
             error(format!("{shown} is not text: the byte at position {at} is not UTF-8"))
@@ -221,6 +225,19 @@ mod tests {
         let error = SourceMap::default().read(&path, None).unwrap_err();
         std::fs::remove_file(&path).unwrap();
         assert!(error.message.ends_with("is not text: the byte at position 6 is not UTF-8"), "{}", error.message);
+    }
+
+    #[test]
+    fn a_compressed_file_is_read_as_its_text() {
+        let path = std::env::temp_dir().join(format!("tyndall-gzip-{}.pbrt.gz", std::process::id()));
+        std::fs::write(&path, gzip::deflate(b"WorldBegin")).unwrap();
+        let mut map = SourceMap::default();
+        let read = map.read(&path, None);
+        std::fs::write(&path, b"WorldBegin").unwrap();
+        let broken = map.read(&path, None);
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(map.text(read.unwrap()), "WorldBegin");
+        assert!(broken.unwrap_err().message.contains("is no gzip file"));
     }
 
     #[test]

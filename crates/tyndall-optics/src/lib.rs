@@ -1,5 +1,7 @@
-//! Where scattering coefficients come from.
+//! Where the numbers of real materials come from.
 //!
-//! - [`measured`]: tables of materials measured in the laboratory, by name.
+//! - [`measured`]: scattering coefficients measured in the laboratory, by name.
+//! - [`spectra`]: indices of metals and standard illuminants, by name.
 
 pub mod measured;
+pub mod spectra;

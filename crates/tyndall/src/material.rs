@@ -2,7 +2,7 @@
 
 use crate::{
     bsdf::{Bsdf, Sides, microfacet::Distribution},
-    spectrum::{Lanes, Wavelengths, glass::Glass},
+    spectrum::{Lanes, Sampled, Wavelengths, glass::Glass},
     texture::{Texture, TexturePoint},
 };
 
@@ -89,12 +89,14 @@ pub enum Metal {
 }
 
 /// A relative index of refraction.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub enum Index {
     /// The same at every wavelength [1].
     Constant(f32),
     /// Another at every wavelength: light disperses.
     Glass(Glass),
+    /// The same by a table; 1 where the table has nothing.
+    Table(Sampled),
 }
 
 impl Material {
@@ -128,7 +130,7 @@ impl Material {
     /// Whether wavelengths part here, so that a path can go on with one only.
     #[inline]
     pub fn disperses(&self) -> bool {
-        matches!(self, Self::Dielectric { eta: Index::Glass(_), .. })
+        matches!(self, Self::Dielectric { eta: Index::Glass(_) | Index::Table(_), .. })
     }
 }
 
@@ -138,6 +140,10 @@ impl Index {
         match self {
             Self::Constant(eta) => *eta,
             Self::Glass(glass) => glass.eta(wavelengths.hero(hero)),
+            Self::Table(table) => match table.at(wavelengths.hero(hero)) {
+                0.0 => 1.0,
+                eta => eta,
+            },
         }
     }
 }

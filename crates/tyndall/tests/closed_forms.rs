@@ -10,6 +10,7 @@ use tyndall::{
     light::{Distant, Light, PointLight},
     material::Material,
     math::Vec3,
+    medium::Homogeneous,
     spectrum::{ColorMode, Spectrum},
 };
 
@@ -65,6 +66,38 @@ fn an_absorber_darkens_the_sky_exponentially() {
         world.sky(1.0);
         let expected = sigma.map(|s| f64::from(-s).exp());
         assert_mean(name, &world.measure(&*integrator, 60_000), expected, 0.02);
+    }
+}
+
+/// Kirchhoff: a slab that absorbs and emits L_e per unit of absorption shines with ∫ σ_a L_e exp(−σ_a s) ds over its
+/// thickness d, L = L_e (1 − exp(−σ_a d)), channel by channel; also one channel that neither absorbs nor emits.
+#[test]
+fn an_absorber_that_emits_shines_with_what_it_takes_away() {
+    for (name, integrator) in integrators() {
+        let sigma = [0.0, 0.7, 2.5];
+        let le = [3.0, 2.0, 1.0];
+        let mut world = World::seen(Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+        let emission = Some(Spectrum::illuminant_rgb(le));
+        world.slab(1.0, Material::Null, Homogeneous { emission, ..medium(sigma, [0.0; 3], 0.0) });
+        let expected: [f64; 3] = std::array::from_fn(|c| f64::from(le[c]) * (1.0 - f64::from(-sigma[c]).exp()));
+        assert_mean(name, &world.measure(&*integrator, 200_000), expected, 0.02);
+    }
+}
+
+/// In a furnace nothing can be seen: a ball that scatters, absorbs and emits L_e = 1, before a sky of radiance 1, keeps the
+/// radiance 1 along every path, for every albedo and phase function. Behind a skin of index n the furnace holds n² of it, as
+/// light that enters is compressed (Clausius), and so must the medium emit.
+#[test]
+fn a_glowing_ball_in_a_furnace_as_hot_as_it_vanishes() {
+    for (name, integrator) in integrators() {
+        for (skin, n, g) in [(Material::Null, 1.0f32, 0.0), (Material::Null, 1.0, 0.7), (glass(1.5, 0.0), 1.5, 0.3)] {
+            let mut world = World::seen(Vec3::new(0.0, 0.3, 5.0), Vec3::new(0.0, 0.3, 0.0));
+            let emission = Some(Spectrum::illuminant_rgb([n * n; 3]));
+            let glowing = Homogeneous { emission, ..medium([0.3, 1.0, 4.0], [2.0, 0.5, 4.0], g) };
+            world.sphere(Vec3::ZERO, 1.0, skin, Some(glowing));
+            world.sky(1.0);
+            assert_mean(&format!("{name}, n = {n}, g = {g}"), &world.measure(&*integrator, 60_000), [1.0; 3], 0.01);
+        }
     }
 }
 

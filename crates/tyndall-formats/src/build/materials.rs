@@ -3,7 +3,7 @@
 use tyndall::{
     bsdf::{Sides, microfacet::Distribution},
     material::{Index, Material, Metal, Roughness},
-    spectrum::glass::{GLASSES, Glass},
+    spectrum::{Spectrum, glass::Glass},
     texture::Texture,
 };
 
@@ -43,10 +43,9 @@ impl Builder<'_> {
 
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {
         match optics {
-            ConductorOptics::EtaK { eta, k } => Some(Metal::Index {
-                eta: self.texture(eta, Measure::Coefficient)?,
-                k: self.texture(k, Measure::Coefficient)?,
-            }),
+            ConductorOptics::EtaK { eta, k } => {
+                Some(Metal::Index { eta: self.texture(eta, Measure::Index)?, k: self.texture(k, Measure::Index)? })
+            }
             ConductorOptics::Reflectance(r) => Some(Metal::Reflectance(self.texture(r, Measure::Share)?)),
             ConductorOptics::Mirror => Some(Metal::Mirror),
         }
@@ -55,13 +54,13 @@ impl Builder<'_> {
     fn index(&mut self, eta: &Spanned<SpectrumDesc>) -> Option<Index> {
         match &eta.value {
             SpectrumDesc::Constant(v) if *v > 0.0 && v.is_finite() => Some(Index::Constant(*v as f32)),
-            SpectrumDesc::Named(name) => match Glass::named(name) {
-                Some(glass) => Some(Index::Glass(*glass)),
-                None => self.fail(
-                    SceneError::at(eta.span, format!("no glass is called \"{name}\""))
-                        .suggest(name, GLASSES.iter().map(|g| g.name)),
-                ),
-            },
+            SpectrumDesc::Named(name) if Glass::named(name).is_some() => Glass::named(name).copied().map(Index::Glass),
+            SpectrumDesc::Samples { .. } | SpectrumDesc::Named(_) | SpectrumDesc::File(_) => {
+                match self.spectrum(eta, Measure::Index)? {
+                    Spectrum::Sampled(table) => Some(Index::Table(table)),
+                    _ => None,
+                }
+            }
             _ => self.fail(
                 SceneError::at(eta.span, "an index of refraction is a positive number or the name of a glass")
                     .help("water has 1.33, glass 1.5; \"glass-BK7\" disperses"),

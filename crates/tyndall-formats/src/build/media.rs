@@ -2,8 +2,8 @@
 
 use tyndall::{
     medium::Homogeneous,
-    phase::{Isotropic, Phase},
-    spectrum::Spectrum,
+    phase::{Isotropic, Phase, Rayleigh},
+    spectrum::{Role, Sampled, Spectrum},
 };
 use tyndall_optics::measured;
 
@@ -20,19 +20,22 @@ impl Builder<'_> {
         if !scale.is_finite() || scale < 0.0 {
             return self.fail(SceneError::at(desc.scale.span, format!("a medium cannot be scaled by {scale}")));
         }
-        if let Some(emission) = &desc.emission {
-            return self.fail(
-                SceneError::at(emission.spectrum.span, "media that emit light are not known yet").help("leave out Le"),
-            );
-        }
+        let emission = match &desc.emission {
+            Some(emission) => Some(self.emission(emission)?),
+            None => None,
+        };
         let (sigma_a, sigma_s) = self.coefficients(&desc.coefficients)?;
-        let phase = self.phase(&desc.phase)?;
-        Some(Homogeneous { sigma_a: sigma_a.scaled(scale as f32), sigma_s: sigma_s.scaled(scale as f32), phase })
+        let phase = match &desc.coefficients {
+            Coefficients::Preset { name, reduced: false } => self.measured_phase(name)?,
+            _ => self.phase(&desc.phase)?,
+        };
+        let [sigma_a, sigma_s] = [sigma_a, sigma_s].map(|sigma| sigma.scaled(scale as f32));
+        Some(Homogeneous { sigma_a, sigma_s, emission, phase })
     }
 
     fn coefficients(&mut self, coefficients: &Coefficients) -> Option<(Spectrum, Spectrum)> {
         match coefficients {
-            Coefficients::Preset(name) => self.preset(name),
+            Coefficients::Preset { name, reduced } => self.preset(name, *reduced),
             Coefficients::AbsorptionScattering { sigma_a, sigma_s } => {
                 Some((self.spectrum(sigma_a, Measure::Coefficient)?, self.spectrum(sigma_s, Measure::Coefficient)?))
             }
@@ -41,7 +44,7 @@ impl Builder<'_> {
     }
 
     /// Measured coefficients [1/mm], in the scene's unit.
-    fn preset(&mut self, name: &Spanned<String>) -> Option<(Spectrum, Spectrum)> {
+    fn preset(&mut self, name: &Spanned<String>, reduced: bool) -> Option<(Spectrum, Spectrum)> {
         let Some(m) = measured::named(&name.value) else {
             return self.fail(
                 SceneError::at(name.span, format!("no medium \"{}\" has been measured", name.value))
@@ -50,7 +53,26 @@ impl Builder<'_> {
         };
         let per_unit = self.desc.options.unit.value.millimetres() as f32;
         let spectrum = |rgb: [f32; 3]| Spectrum::unbounded_rgb(rgb.map(|v| v * per_unit));
-        Some((spectrum(m.sigma_a), spectrum(m.sigma_s_reduced)))
+        if reduced {
+            return Some((spectrum(m.sigma_a), spectrum(m.sigma_s_reduced)));
+        }
+        let Some(full) = m.full else {
+            return self.fail(
+                SceneError::at(name.span, format!("of \"{}\" only reduced scattering has been measured", m.name))
+                    .help("leave out \"bool reduced\" false"),
+            );
+        };
+        Some((spectrum(m.sigma_a), spectrum(full.sigma_s)))
+    }
+
+    /// The phase function that belongs to full scattering. One holds for all wavelengths: its mean cosine is that of the
+    /// scattered light, `Σ σ_s g / Σ σ_s` over red, green and blue.
+    fn measured_phase(&mut self, name: &Spanned<String>) -> Option<Phase> {
+        let full = measured::named(&name.value)?.full?;
+        let scattered: f32 = full.sigma_s.iter().sum();
+        let forward: f32 = full.sigma_s.iter().zip(full.g).map(|(s, g)| s * g).sum();
+        let g = if scattered > 0.0 { forward / scattered } else { 0.0 };
+        self.phase(&PhaseDesc::HenyeyGreenstein { g: Spanned::new(f64::from(g), name.span) })
     }
 
     /// `σ_s = albedo · σ_t`, `σ_a = σ_t − σ_s`, channel by channel.
@@ -59,13 +81,11 @@ impl Builder<'_> {
         sigma_t: &Spanned<SpectrumDesc>,
         albedo: &Spanned<SpectrumDesc>,
     ) -> Option<(Spectrum, Spectrum)> {
-        self.spectrum(sigma_t, Measure::Coefficient)?;
-        self.spectrum(albedo, Measure::Share)?;
+        let extinction = self.spectrum(sigma_t, Measure::Coefficient)?;
+        let share = self.spectrum(albedo, Measure::Share)?;
         let (Some(t), Some(a)) = (channels(&sigma_t.value), channels(&albedo.value)) else {
-            return self.fail(
-                SceneError::at(albedo.span, "extinction with an albedo is known for numbers and rgb only")
-                    .help("give sigma_a and sigma_s instead"),
-            );
+            let [t, a] = [extinction, share];
+            return Some((product(&t, |l| 1.0 - a.at(l), a.rgb().map(|a| 1.0 - a)), product(&t, |l| a.at(l), a.rgb())));
         };
         let sigma_s: [f64; 3] = std::array::from_fn(|c| t[c] * a[c]);
         let sigma_a: [f64; 3] = std::array::from_fn(|c| t[c] * (1.0 - a[c]));
@@ -75,6 +95,7 @@ impl Builder<'_> {
     fn phase(&mut self, phase: &PhaseDesc) -> Option<Phase> {
         match phase {
             PhaseDesc::Isotropic => Some(Phase::Isotropic(Isotropic)),
+            PhaseDesc::Rayleigh => Some(Phase::Rayleigh(Rayleigh)),
             PhaseDesc::HenyeyGreenstein { g } => match Phase::henyey_greenstein(g.value as f32) {
                 Ok(phase) => Some(phase),
                 Err(e) => self.fail(
@@ -90,6 +111,21 @@ fn channels(spectrum: &SpectrumDesc) -> Option<[f64; 3]> {
         SpectrumDesc::Constant(v) => Some([*v; 3]),
         SpectrumDesc::Rgb(rgb) => Some(*rgb),
         _ => None,
+    }
+}
+
+/// A spectrum times a share of it, at every nanometre; the colour is the product of the two colours, as Mitsuba has it.
+fn product(spectrum: &Spectrum, share: impl Fn(f32) -> f32, share_rgb: [f32; 3]) -> Spectrum {
+    let (lambda, values): (Vec<_>, Vec<_>) =
+        (360..=830).map(|l| (l as f32, (spectrum.at(l as f32) * share(l as f32)).max(0.0))).unzip();
+    match Sampled::new(&lambda, &values, Role::Reflectance) {
+        Ok(mut sampled) => {
+            let rgb = spectrum.rgb();
+            sampled.rgb = std::array::from_fn(|c| (rgb[c] * share_rgb[c]).max(0.0));
+            Spectrum::Sampled(sampled)
+        }
+        // Both factors are finite: this is not reached.
+        Err(_) => Spectrum::Constant(0.0),
     }
 }
 

@@ -12,7 +12,7 @@ use super::{Builder, material_id, medium_id};
 use crate::{
     desc::{AreaLightDesc, FileRef, GroupDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
     error::SceneError,
-    mesh::{MeshError, TriangleMesh, read_obj, read_ply},
+    mesh::{MeshError, TriangleMesh, read_obj, read_ply, read_serialized},
 };
 
 /// All shapes of a scene.
@@ -115,6 +115,11 @@ impl<'a> Builder<'a> {
             ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
                 let mesh = self.mesh_file(read_ply(&path.value), path, normals, *flip_tex_coords)?;
+                vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
+            }
+            ShapeKind::Serialized { path, index, face_normals } => {
+                let normals = Normals::asked(*face_normals, false);
+                let mesh = self.mesh_file(read_serialized(&path.value, *index), path, normals, false)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
             ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {

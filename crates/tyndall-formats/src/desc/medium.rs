@@ -23,7 +23,12 @@ pub struct MediumDesc {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Coefficients {
     /// Measured ones of this name \[1/mm\].
-    Preset(Spanned<String>),
+    Preset {
+        /// The material.
+        name: Spanned<String>,
+        /// Whether scattering is the reduced coefficient, to be isotropic (pbrt), or the full one with its mean cosine.
+        reduced: bool,
+    },
     /// Both coefficients.
     AbsorptionScattering {
         /// Absorption \[1/scene unit\].
@@ -50,6 +55,8 @@ pub enum PhaseDesc {
         /// Mean cosine, in (-1, 1): positive is forward.
         g: Spanned<f64>,
     },
+    /// Rayleigh's, of particles far smaller than the wavelength.
+    Rayleigh,
 }
 
 /// What is on either side of a surface. `None` is empty space.

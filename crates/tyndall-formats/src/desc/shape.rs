@@ -74,6 +74,15 @@ pub enum ShapeKind {
         /// Whether v of the texture coordinates runs the other way.
         flip_tex_coords: bool,
     },
+    /// A mesh of a file in Mitsuba's own format.
+    Serialized {
+        /// The file.
+        path: FileRef,
+        /// Which of its meshes, from 0.
+        index: u32,
+        /// Whether normals of the file are left out and each face is flat; a mesh without normals is flat anyway.
+        face_normals: bool,
+    },
 }
 
 /// Triangles. Checked by the reader: indices are in range, and normals and coordinates are none or as many as positions.

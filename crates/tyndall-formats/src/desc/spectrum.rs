@@ -15,7 +15,7 @@ pub enum SpectrumDesc {
         /// Temperature \[K\], positive.
         kelvin: f64,
     },
-    /// Piecewise linear between samples; constant beyond the first and the last.
+    /// Piecewise linear between samples; nothing beyond the first and the last.
     Samples {
         /// Wavelengths \[nm\], increasing.
         lambda: Vec<f64>,

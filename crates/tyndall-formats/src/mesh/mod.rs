@@ -1,4 +1,4 @@
-//! Triangle meshes as they stand in files: PLY and OBJ.
+//! Triangle meshes as they stand in files: PLY, OBJ and Mitsuba's serialized.
 //!
 //! A file is read whole, and nothing is allocated that its own bytes could not fill, so that a header which promises
 //! 10¹² vertices is an error and not an exhausted machine. What a reader returns has passed [`TriangleMesh::checked`].
@@ -6,13 +6,20 @@
 mod normals;
 mod obj;
 mod ply;
+mod serialized;
 
 use std::path::{Path, PathBuf};
 
 use tyndall::math::{Vec2, Vec3};
 
+use crate::gzip;
+
 pub use obj::{parse_obj, read_obj};
 pub use ply::{parse_ply, read_ply, write_ply};
+pub use serialized::{parse_serialized, read_serialized};
+
+/// The longest mesh that a compressed file may hold \[bytes\]: some 50 million triangles.
+const MAX_INFLATED_BYTES: u64 = 1 << 31;
 
 /// Triangles over shared vertices, in the file's own frame and winding.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -80,6 +87,7 @@ fn read_with(
 ) -> Result<TriangleMesh, MeshError> {
     std::fs::read(path)
         .map_err(|error| error.to_string())
+        .and_then(|bytes| if gzip::is_gzip(path) { gzip::inflate(&bytes, MAX_INFLATED_BYTES) } else { Ok(bytes) })
         .and_then(parse)
         .map_err(|problem| MeshError { path: path.to_owned(), problem })
 }

@@ -1,5 +1,7 @@
 //! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `null`, and `twosided` around one that reflects.
 
+use tyndall_optics::spectra;
+
 use super::object::{Measure, Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
@@ -34,9 +36,6 @@ const INDICES: &[(&str, f64)] = &[
     ("pet", 1.5750),
     ("diamond", 2.419),
 ];
-
-/// Metals whose indices are known by name.
-const METALS: &[&str] = &["Ag", "Al", "Au", "Cu"];
 
 impl<'t> Builder<'t> {
     pub(super) fn bsdf(&mut self, element: &'t Element) -> Option<MaterialDesc> {
@@ -120,25 +119,27 @@ impl<'t> Builder<'t> {
 
     /// By `eta` and `k`, by the name of a `material`, or a perfect mirror.
     fn conductor(&mut self, object: &mut Object<'t>) -> Option<ConductorOptics> {
-        let material = object.string("material", &mut self.report);
+        let material = object.string("material", &mut self.report).filter(|m| m.value != "none");
         let eta = self.varying(object, "eta", Measure::Amount);
         let k = self.varying(object, "k", Measure::Amount);
         let error = match (eta, k, material) {
-            (Some(eta), Some(k), None) => return Some(ConductorOptics::EtaK { eta, k }),
             (None, None, None) => return Some(ConductorOptics::Mirror),
-            (None, None, Some(material)) if material.value == "none" => return Some(ConductorOptics::Mirror),
-            (None, None, Some(material)) if METALS.contains(&material.value) => {
+            (eta, k, None) => {
+                // Mitsuba's defaults: the index i reflects all.
+                let default = |v| Spanned::new(Varying::constant(v), object.element.span);
+                let (eta, k) = (eta.unwrap_or_else(|| default(0.0)), k.unwrap_or_else(|| default(1.0)));
+                return Some(ConductorOptics::EtaK { eta, k });
+            }
+            (None, None, Some(material)) if is_metal(material.value) => {
                 let named = |what| SpectrumDesc::Named(format!("metal-{}-{what}", material.value));
                 let data = |what| Spanned::new(Varying::Everywhere(named(what)), material.span);
                 return Some(ConductorOptics::EtaK { eta: data("eta"), k: data("k") });
             }
             (None, None, Some(material)) => {
                 let error = SceneError::at(material.span, format!("the metal \"{}\" is not known", material.value));
-                error.suggest(material.value, METALS.iter().copied().chain(["none"]))
+                error.suggest(material.value, spectra::metals().chain(["none"]).collect::<Vec<_>>())
             }
-            _ => {
-                SceneError::at(object.element.span, "a conductor has either a \"material\", or both \"eta\" and \"k\"")
-            }
+            _ => SceneError::at(object.element.span, "a conductor has either a \"material\", or \"eta\" and \"k\""),
         };
         self.report.errors.push(error);
         None
@@ -172,4 +173,9 @@ fn index(object: &mut Object, name: &'static str, default: &str, report: &mut Re
     };
     report.errors.push(error);
     default
+}
+
+/// Whether the complex index of this substance is known.
+fn is_metal(name: &str) -> bool {
+    spectra::named(&format!("metal-{name}-eta")).is_some()
 }

@@ -17,8 +17,8 @@ impl<'t> Builder<'t> {
         };
         let report = &mut self.report;
         let coefficients = Coefficients::ExtinctionAlbedo {
-            sigma_t: object.spectrum_or("sigma_t", Measure::Amount, 1.0, report),
-            albedo: object.spectrum_or("albedo", Measure::Part, 0.75, report),
+            sigma_t: object.volume("sigma_t", Measure::Amount, 1.0, report),
+            albedo: object.volume("albedo", Measure::Part, 0.75, report),
         };
         let scale = object.float("scale", |scale| scale >= 0.0, "at least 0", report);
         object.ignore(&["sample_emitters"], "lights are sampled wherever that helps", report);
@@ -37,12 +37,14 @@ impl<'t> Builder<'t> {
     fn phase(&mut self, element: &'t Element) -> Option<PhaseDesc> {
         let plugin = words::plugin(element, &mut self.report)?;
         let mut object = self.object(element);
-        let phase = if plugin == "hg" {
-            let g = object.float("g", |g| g > -1.0 && g < 1.0, "greater than -1 and less than 1", &mut self.report);
-            // Mitsuba's default.
-            PhaseDesc::HenyeyGreenstein { g: g.unwrap_or(Spanned::new(0.8, element.span)) }
-        } else {
-            PhaseDesc::Isotropic
+        let phase = match plugin {
+            "hg" => {
+                let g = object.float("g", |g| g > -1.0 && g < 1.0, "greater than -1 and less than 1", &mut self.report);
+                // Mitsuba's default.
+                PhaseDesc::HenyeyGreenstein { g: g.unwrap_or(Spanned::new(0.8, element.span)) }
+            }
+            "rayleigh" => PhaseDesc::Rayleigh,
+            _ => PhaseDesc::Isotropic,
         };
         object.finish(&mut self.report);
         Some(phase)

@@ -26,6 +26,7 @@ mod object;
 mod parameters;
 mod scene;
 mod shape;
+mod spectrum;
 mod texture;
 mod transform;
 mod tree;

@@ -42,7 +42,7 @@ pub(super) fn vector(element: &Element, missing: f64) -> Result<DVec3, SceneErro
     }
 }
 
-fn list(text: &str, span: Span) -> Result<Vec<f64>, SceneError> {
+pub(super) fn list(text: &str, span: Span) -> Result<Vec<f64>, SceneError> {
     let words = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty());
     words.map(|word| number(word, span)).collect()
 }

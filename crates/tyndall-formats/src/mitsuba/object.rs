@@ -4,16 +4,17 @@
 //! somebody did. So the reader of a plugin is also the list of its words.
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
 
-use super::number::{number, one_or_three, vector};
+use super::number::{number, vector};
 use super::transform::transform;
-use super::tree::Element;
+use super::tree::{self, Element};
 use super::words;
-use crate::desc::{EmissionDesc, Ignored, Magnitude, SpectrumDesc};
+use crate::desc::{FileRef, Ignored};
 use crate::error::{ErrorList, SceneError};
-use crate::source::{Span, Spanned};
+use crate::source::{SourceMap, Span, Spanned};
 
 /// What was found wrong, and what was found to have no effect.
 #[derive(Default)]
@@ -24,6 +25,20 @@ pub(super) struct Report {
 
 /// Objects by their `id`.
 pub(super) type Ids<'t> = HashMap<&'t str, &'t Element>;
+
+/// Where files may lie.
+#[derive(Clone, Copy)]
+pub(super) struct Files<'t> {
+    pub(super) sources: &'t SourceMap,
+    pub(super) directories: &'t [PathBuf],
+}
+
+impl Files<'_> {
+    /// The file of this name.
+    pub(super) fn resolve(&self, name: Spanned<&str>) -> FileRef {
+        name.map(|text| tree::resolve(text, name.span.file, self.directories, self.sources))
+    }
+}
 
 /// A child, with references followed.
 #[derive(Clone, Copy)]
@@ -54,12 +69,13 @@ pub(super) enum Measure {
 /// An object being read.
 pub(super) struct Object<'t> {
     pub(super) element: &'t Element,
+    pub(super) files: Files<'t>,
     children: Vec<Child<'t>>,
     known: Vec<&'static str>,
 }
 
 impl<'t> Object<'t> {
-    pub(super) fn new(element: &'t Element, ids: &Ids<'t>, report: &mut Report) -> Self {
+    pub(super) fn new(element: &'t Element, ids: &Ids<'t>, files: Files<'t>, report: &mut Report) -> Self {
         let mut children = Vec::new();
         for at in &element.children {
             if at.tag != "ref" {
@@ -73,7 +89,7 @@ impl<'t> Object<'t> {
                 report.errors.push(error.suggest(&id.value, names));
             }
         }
-        Self { element, children, known: Vec::new() }
+        Self { element, files, children, known: Vec::new() }
     }
 
     /// The plugin.
@@ -87,7 +103,7 @@ impl<'t> Object<'t> {
     }
 
     /// The parameter of this name, if it is one of these elements.
-    fn parameter(&mut self, name: &'static str, tags: &[&str], report: &mut Report) -> Option<&'t Element> {
+    pub(super) fn parameter(&mut self, name: &'static str, tags: &[&str], report: &mut Report) -> Option<&'t Element> {
         self.known.push(name);
         let mut found: Option<&'t Element> = None;
         for child in self.children.iter_mut().filter(|child| child.name() == Some(name)) {
@@ -105,7 +121,7 @@ impl<'t> Object<'t> {
             return Some(found);
         }
         let here = found.span_of("name");
-        report.errors.push(if matches!(found.tag, "texture" | "volume" | "spectrum" | "ref") {
+        report.errors.push(if matches!(found.tag, "texture" | "volume" | "ref") {
             SceneError::at(here, format!("a <{}> for \"{name}\" is not known yet", found.tag))
                 .help(format!("write a <{}>", tags[0]))
         } else {
@@ -228,50 +244,6 @@ impl<'t> Object<'t> {
         self.children.iter().any(|child| child.name() == Some(name))
     }
 
-    pub(super) fn spectrum(
-        &mut self,
-        name: &'static str,
-        measure: Measure,
-        report: &mut Report,
-    ) -> Option<Spanned<SpectrumDesc>> {
-        self.value(name, &["rgb", "float", "integer"], report, |element| {
-            let (text, span) = (element.text("value"), element.span_of("value"));
-            let (spectrum, rgb) = if element.tag == "rgb" {
-                let rgb = one_or_three(text, span)?;
-                (SpectrumDesc::Rgb(rgb), rgb)
-            } else {
-                let v = number(text, span)?;
-                (if measure == Measure::Light { SpectrumDesc::Rgb([v; 3]) } else { SpectrumDesc::Constant(v) }, [v; 3])
-            };
-            match measure {
-                Measure::Part if rgb.iter().any(|c| !(0.0..=1.0).contains(c)) => {
-                    Err(must_be(name, "in [0, 1]", text, span))
-                }
-                _ if rgb.iter().any(|&c| c < 0.0) => Err(must_be(name, "at least 0", text, span)),
-                _ => Ok(spectrum),
-            }
-        })
-    }
-
-    /// A spectrum, or a constant one.
-    pub(super) fn spectrum_or(
-        &mut self,
-        name: &'static str,
-        measure: Measure,
-        default: f64,
-        report: &mut Report,
-    ) -> Spanned<SpectrumDesc> {
-        let found = self.spectrum(name, measure, report);
-        found.unwrap_or(Spanned::new(SpectrumDesc::Constant(default), self.element.span))
-    }
-
-    /// Light; white of radiance 1 if the file says nothing.
-    pub(super) fn light(&mut self, name: &'static str, report: &mut Report) -> EmissionDesc {
-        let white = Spanned::new(SpectrumDesc::Rgb([1.0; 3]), self.element.span);
-        let spectrum = self.spectrum(name, Measure::Light, report).unwrap_or(white);
-        EmissionDesc { spectrum, scale: 1.0, magnitude: Magnitude::AsWritten }
-    }
-
     /// The objects of this tag inside it, given here or by reference.
     pub(super) fn nested(&mut self, tag: &str) -> Vec<Child<'t>> {
         let children = self.children.iter_mut().filter(|child| child.element.tag == tag);
@@ -331,6 +303,6 @@ impl<'t> Object<'t> {
     }
 }
 
-fn must_be(name: &str, wanted: &str, text: &str, span: Span) -> SceneError {
+pub(super) fn must_be(name: &str, wanted: &str, text: &str, span: Span) -> SceneError {
     SceneError::at(span, format!("\"{name}\" must be {wanted}, not {text}"))
 }

@@ -1,10 +1,9 @@
 //! From the tree to the scene: finds the parts, follows references, builds each part once.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
 
-use super::object::{Child, Ids, Object, Report};
-use super::tree::{self, Element, Tree};
+use super::object::{Child, Files, Ids, Object, Report};
+use super::tree::{Element, Tree};
 use super::{camera, integrator, words};
 use crate::desc::{
     FileRef, GroupDesc, GroupId, InstanceDesc, IntegratorDesc, LengthUnit, LightDesc, MaterialDesc, MaterialId,
@@ -16,8 +15,7 @@ use crate::source::{SourceMap, Span, Spanned};
 /// The scene as far as it is built.
 pub(super) struct Builder<'t> {
     ids: Ids<'t>,
-    sources: &'t SourceMap,
-    directories: &'t [PathBuf],
+    files: Files<'t>,
     pub(super) report: Report,
     /// Parts that are built, or were found wrong, by the element that says them.
     built_materials: HashMap<Span, Option<MaterialId>>,
@@ -42,8 +40,7 @@ pub(super) fn build(tree: &Tree, sources: &SourceMap, errors: ErrorList) -> (Opt
     let ids = ids(tree, &mut report.errors);
     let mut builder = Builder {
         ids,
-        sources,
-        directories: &tree.directories,
+        files: Files { sources, directories: &tree.directories },
         report,
         built_materials: HashMap::new(),
         built_media: HashMap::new(),
@@ -86,12 +83,12 @@ fn ids<'t>(tree: &'t Tree, errors: &mut ErrorList) -> Ids<'t> {
 
 impl<'t> Builder<'t> {
     pub(super) fn object(&mut self, element: &'t Element) -> Object<'t> {
-        Object::new(element, &self.ids, &mut self.report)
+        Object::new(element, &self.ids, self.files, &mut self.report)
     }
 
     /// The file that a `filename` names.
     pub(super) fn file(&self, name: Spanned<&str>) -> FileRef {
-        name.map(|text| tree::resolve(text, name.span.file, self.directories, self.sources))
+        self.files.resolve(name)
     }
 
     fn scene(&mut self, root: &'t Element) -> Option<SceneDesc> {

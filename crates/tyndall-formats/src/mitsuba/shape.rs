@@ -1,4 +1,4 @@
-//! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, and `shapegroup` with `instance`.
+//! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `serialized`, and `shapegroup` with `instance`.
 
 use glam::DMat4;
 
@@ -70,17 +70,19 @@ impl<'t> Builder<'t> {
             }
             _ => {
                 let face_normals = object.flag("face_normals", false, report);
-                let flip_tex_coords = object.flag("flip_tex_coords", plugin == "obj", report);
+                let flip_tex_coords = plugin != "serialized" && object.flag("flip_tex_coords", plugin == "obj", report);
+                let index = if plugin == "serialized" { object.count("shape_index", 0, 0, report).value } else { 0 };
                 let Some(name) = object.string("filename", report) else {
                     let message = format!("the shape \"{plugin}\" lacks a \"filename\"");
                     report.errors.push(SceneError::at(object.element.span, message));
                     return None;
                 };
                 let path = self.file(name);
-                if plugin == "obj" {
-                    ShapeKind::Obj { path, face_normals, smooth_normals: !face_normals, flip_tex_coords }
-                } else {
-                    ShapeKind::Ply { path, face_normals, smooth_normals: !face_normals, flip_tex_coords }
+                let smooth_normals = !face_normals;
+                match plugin {
+                    "obj" => ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords },
+                    "serialized" => ShapeKind::Serialized { path, index, face_normals },
+                    _ => ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords },
                 }
             }
         })

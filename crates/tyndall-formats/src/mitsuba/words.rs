@@ -45,7 +45,7 @@ const PLUGINS: &[Plugins] = &[
         later: &["aov", "depth", "moment", "ptracer", "stokes"],
     },
     Plugins { tag: "medium", known: &["homogeneous"], later: &["heterogeneous"] },
-    Plugins { tag: "phase", known: &["isotropic", "hg"], later: &["blendphase", "rayleigh", "sggx", "tabphase"] },
+    Plugins { tag: "phase", known: &["isotropic", "hg", "rayleigh"], later: &["blendphase", "sggx", "tabphase"] },
     Plugins { tag: "rfilter", known: &["box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"], later: &[] },
     Plugins {
         tag: "sampler",
@@ -59,20 +59,11 @@ const PLUGINS: &[Plugins] = &[
     },
     Plugins {
         tag: "shape",
-        known: &["sphere", "rectangle", "cube", "disk", "obj", "ply", "shapegroup", "instance"],
-        later: &[
-            "bsplinecurve",
-            "cylinder",
-            "ellipsoids",
-            "ellipsoidsmesh",
-            "linearcurve",
-            "merge",
-            "sdfgrid",
-            "serialized",
-        ],
+        known: &["sphere", "rectangle", "cube", "disk", "obj", "ply", "serialized", "shapegroup", "instance"],
+        later: &["bsplinecurve", "cylinder", "ellipsoids", "ellipsoidsmesh", "linearcurve", "merge", "sdfgrid"],
     },
     Plugins { tag: "texture", known: &["bitmap", "checkerboard"], later: &["mesh_attribute", "volume"] },
-    Plugins { tag: "volume", known: &[], later: &["constvolume", "gridvolume"] },
+    Plugins { tag: "volume", known: &["constvolume"], later: &["gridvolume"] },
 ];
 
 /// Whether an element is an object: something with plugins.

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use glam::{DMat4, DVec3};
 
 use super::Reader;
+use super::color_space::ColorSpace;
 use super::param::Param;
 use super::params::{MAX_PARAMS, Params, quote};
 use super::parser::Statement;
@@ -58,7 +59,8 @@ impl Reader {
             "CoordSysTransform" => self.checked(|r| r.state.recall(&s.names[0])),
             "CoordinateSystem" => self.state.name(&s.names[0].value, self.state.now.ctm),
             "Film" => self.film(s),
-            "Import" | "Include" => self.include(&s.names[0].value, s.whole),
+            "Import" => self.import(&s.names[0].value, s.whole),
+            "Include" => self.include(&s.names[0].value, s.whole),
             "Integrator" => self.integrator(s),
             "LightSource" => self.light(s),
             "MakeNamedMaterial" => self.named_material(s),
@@ -94,6 +96,9 @@ impl Reader {
     }
 
     fn transform(&mut self, s: &Statement<'_>) {
+        if self.state.now.at_end_only {
+            return self.ignore(s.whole, "nothing moves: things stand where they are at the start time");
+        }
         let n = &s.numbers;
         let vec = |at: usize| DVec3::new(n[at], n[at + 1], n[at + 2]);
         // The file lists a matrix column by column.
@@ -127,10 +132,9 @@ impl Reader {
 
     fn active_transform(&mut self, s: &Statement<'_>) {
         match &*s.names[0].value {
-            "All" => self.ignore(s.whole, "nothing moves, so there is one transformation only"),
-            word @ ("StartTime" | "EndTime") => {
-                let message = format!("ActiveTransform {word}: moving objects are not supported yet");
-                self.errors.push(SceneError::at(s.whole, message).help("leave out what belongs to the end time"));
+            word @ ("All" | "StartTime" | "EndTime") => {
+                self.state.now.at_end_only = word == "EndTime";
+                self.ignore(s.whole, "nothing moves: things stand where they are at the start time");
             }
             word => {
                 let error = SceneError::at(s.names[0].span, format!("ActiveTransform knows no {}", quote(word)));
@@ -141,17 +145,12 @@ impl Reader {
 
     fn color_space(&mut self, s: &Statement<'_>) {
         let word = &*s.names[0].value;
-        match word {
-            "srgb" => self.ignore(s.whole, "colours are sRGB anyway"),
-            "aces2065-1" | "rec2020" | "dci-p3" => {
-                let message = format!("the colour space {} is not supported yet", quote(word));
-                self.errors.push(SceneError::at(s.names[0].span, message).help("convert the colours to srgb"));
-            }
-            _ => {
-                let message = format!("there is no colour space {}", quote(word));
-                let known = ["srgb", "aces2065-1", "rec2020", "dci-p3"];
-                self.errors.push(SceneError::at(s.names[0].span, message).suggest(word, known));
-            }
+        if let Some((_, space)) = ColorSpace::NAMES.into_iter().find(|(name, _)| *name == word) {
+            self.state.now.color_space = space;
+        } else {
+            let message = format!("there is no colour space {}", quote(word));
+            let known = ColorSpace::NAMES.map(|(name, _)| name);
+            self.errors.push(SceneError::at(s.names[0].span, message).suggest(word, known));
         }
     }
 
@@ -244,6 +243,7 @@ impl Reader {
         let name = &s.names[0];
         let owner = format!("{what} {}", quote(&name.value));
         Params::new(owner, name.span, std::mem::take(&mut s.params), defaults, &self.dir)
+            .in_space(self.state.now.color_space)
     }
 
     /// Closes them.

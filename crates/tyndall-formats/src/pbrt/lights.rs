@@ -10,9 +10,7 @@ use glam::{DMat4, DVec3};
 use super::Reader;
 use super::params::Params;
 use super::parser::Statement;
-use crate::desc::{
-    AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpectrumDesc, SpotFalloff,
-};
+use crate::desc::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
 use crate::error::SceneError;
 use crate::source::Spanned;
 
@@ -62,7 +60,7 @@ impl Reader {
 impl Params {
     /// A spectrum of light, by default white, and the parameter `scale`.
     fn emission(&mut self, name: &'static str) -> EmissionDesc {
-        let spectrum = self.spectrum(name, SpectrumDesc::Rgb([1.0; 3]));
+        let spectrum = self.light(name);
         let scale = self.not_negative("scale", 1.0).value;
         EmissionDesc { spectrum, scale, magnitude: Magnitude::UnitLuminance }
     }
@@ -70,7 +68,7 @@ impl Params {
     /// A spectrum of light, if given, and its own factor.
     pub(super) fn emission_opt(&mut self, name: &'static str, scale: &'static str) -> Option<EmissionDesc> {
         let scale = self.not_negative(scale, 1.0).value;
-        let spectrum = self.spectrum_opt(name)?;
+        let spectrum = self.light_opt(name)?;
         Some(EmissionDesc { spectrum, scale, magnitude: Magnitude::UnitLuminance })
     }
 

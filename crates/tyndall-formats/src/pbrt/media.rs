@@ -41,6 +41,8 @@ impl Reader {
 
 fn coefficients(p: &mut Params) -> Coefficients {
     let preset = p.string_opt("preset");
+    // tyndall's own: pbrt has the reduced coefficients only.
+    let reduced = p.boolean("reduced", true);
     let given = [p.spectrum_opt("sigma_a"), p.spectrum_opt("sigma_s")];
     if let Some(preset) = preset {
         for sigma in given.into_iter().flatten() {
@@ -50,7 +52,13 @@ fn coefficients(p: &mut Params) -> Coefficients {
                     .related(preset.span, "the preset"),
             );
         }
-        return Coefficients::Preset(preset);
+        if !reduced.value && p.has("g") {
+            p.error(
+                SceneError::at(reduced.span, "full scattering comes with its own mean cosine")
+                    .help("leave out \"g\", or \"bool reduced\" false"),
+            );
+        }
+        return Coefficients::Preset { name: preset, reduced: reduced.value };
     }
     let [sigma_a, sigma_s] =
         given.map(|s| s.unwrap_or(crate::source::Spanned::new(SpectrumDesc::Constant(1.0), p.span)));

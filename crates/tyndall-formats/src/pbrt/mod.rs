@@ -8,9 +8,12 @@
 //! - An unused parameter is an error, and so is any word that would silently change nothing.
 //! - Without `"integer maxdepth"` paths have no limit (pbrt: 5).
 //! - `Option "string unit" "mm"` says what one scene unit is (default: mm).
+//! - `ColorSpace` says what colours are given in; they become linear sRGB (`color_space`), and so does the image.
+//! - Nothing moves: things stand where they are at the start time.
 //! - Emissive shapes in objects are an error (pbrt leaves their light out).
 
 mod camera;
+mod color_space;
 mod directives;
 mod film;
 mod lexer;
@@ -40,7 +43,7 @@ use crate::source::{FileId, SourceMap, Span};
 use names::Registry;
 use parser::Parser;
 use settings::Settings;
-use state::State;
+use state::{Block, State};
 use textures::Textures;
 
 /// The deepest chain of includes.
@@ -143,6 +146,17 @@ impl Reader {
             self.execute(statement);
         }
         self.open.pop();
+    }
+
+    /// Reads another file in a scope of its own: what it makes and names stays, what it sets does not.
+    fn import(&mut self, name: &str, span: Span) {
+        let named = self.state.named_spaces();
+        self.checked(|r| r.state.push(Block::Import, span));
+        self.include(name, span);
+        if !self.errors.is_full() {
+            self.checked(|r| r.state.pop(Block::Import, span));
+        }
+        self.state.restore_named_spaces(named);
     }
 
     /// Reads another file as if it stood here.

@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use super::color_space::ColorSpace;
 use super::lexer::shorten;
 use super::param::{Param, ParamType};
 use super::textures::{Texels, Textures};
@@ -24,6 +25,7 @@ pub(super) struct Params {
     /// The words that name the owner.
     pub(super) span: Span,
     dir: Rc<Path>,
+    space: ColorSpace,
     list: Vec<Param>,
     asked: Vec<&'static str>,
     errors: Vec<SceneError>,
@@ -53,7 +55,13 @@ impl Params {
                 kept.push(param.clone());
             }
         }
-        Self { owner, span, dir: Rc::clone(dir), list: kept, asked: Vec::new(), errors, ignored: Vec::new() }
+        let (dir, space) = (Rc::clone(dir), ColorSpace::default());
+        Self { owner, span, dir, space, list: kept, asked: Vec::new(), errors, ignored: Vec::new() }
+    }
+
+    /// The same, with colours of this space.
+    pub(super) fn in_space(self, space: ColorSpace) -> Self {
+        Self { space, ..self }
     }
 
     /// A file, relative to the directory of the scene.
@@ -292,17 +300,25 @@ impl Params {
         Some(faces.iter().map(|face| face.map(|i| i as u32)).collect())
     }
 
-    pub(super) fn spectrum(&mut self, name: &'static str, default: SpectrumDesc) -> Spanned<SpectrumDesc> {
-        self.spectrum_opt(name).unwrap_or(Spanned::new(default, self.span))
+    pub(super) fn spectrum_opt(&mut self, name: &'static str) -> Option<Spanned<SpectrumDesc>> {
+        self.spectrum_of(name, &[ParamType::Rgb, ParamType::Spectrum, ParamType::Blackbody], ColorSpace::filter)
     }
 
-    pub(super) fn spectrum_opt(&mut self, name: &'static str) -> Option<Spanned<SpectrumDesc>> {
-        self.spectrum_of(name, &[ParamType::Rgb, ParamType::Spectrum, ParamType::Blackbody])
+    /// A spectrum of light; by default the white of the colour space.
+    pub(super) fn light(&mut self, name: &'static str) -> Spanned<SpectrumDesc> {
+        let white = SpectrumDesc::Rgb(self.space.light([1.0; 3]));
+        self.light_opt(name).unwrap_or(Spanned::new(white, self.span))
+    }
+
+    /// A spectrum of light, if given.
+    pub(super) fn light_opt(&mut self, name: &'static str) -> Option<Spanned<SpectrumDesc>> {
+        self.spectrum_of(name, &[ParamType::Rgb, ParamType::Spectrum, ParamType::Blackbody], ColorSpace::light)
     }
 
     /// A spectrum that may also be given as one number.
     pub(super) fn spectrum_or_float(&mut self, name: &'static str, default: SpectrumDesc) -> Spanned<SpectrumDesc> {
-        self.spectrum_of(name, &[ParamType::Float, ParamType::Spectrum]).unwrap_or(Spanned::new(default, self.span))
+        self.spectrum_of(name, &[ParamType::Float, ParamType::Spectrum], ColorSpace::filter)
+            .unwrap_or(Spanned::new(default, self.span))
     }
 
     /// A spectrum, or the texture of the name.
@@ -363,11 +379,16 @@ impl Params {
         }
     }
 
-    fn spectrum_of(&mut self, name: &'static str, kinds: &[ParamType]) -> Option<Spanned<SpectrumDesc>> {
+    fn spectrum_of(
+        &mut self,
+        name: &'static str,
+        kinds: &[ParamType],
+        to_srgb: fn(ColorSpace, [f64; 3]) -> [f64; 3],
+    ) -> Option<Spanned<SpectrumDesc>> {
         let param = self.take(name, kinds)?;
         let values = &param.values;
         let spectrum = match (param.kind, &values.numbers[..], values.strings.first()) {
-            (ParamType::Rgb, &[r, g, b], _) => Ok(SpectrumDesc::Rgb([r, g, b])),
+            (ParamType::Rgb, &[r, g, b], _) => Ok(SpectrumDesc::Rgb(to_srgb(self.space, [r, g, b]))),
             (ParamType::Float, &[value], _) => Ok(SpectrumDesc::Constant(value)),
             (ParamType::Blackbody, &[kelvin], _) if kelvin > 0.0 => Ok(SpectrumDesc::Blackbody { kelvin }),
             (ParamType::Blackbody, &[_], _) => Err("takes a positive temperature in kelvin"),

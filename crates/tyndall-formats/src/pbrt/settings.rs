@@ -68,17 +68,18 @@ impl Settings {
 }
 
 /// Options of pbrt that change nothing here.
-const IGNORED_OPTIONS: [(&str, &str); 5] = [
+const IGNORED_OPTIONS: [(&str, &str); 7] = [
     ("disabletexturefiltering", "there are no textures to filter"),
     ("displacementedgescale", "there is no displacement"),
+    ("msereferenceimage", "`tyndall compare` takes the difference of two images"),
+    ("msereferenceout", "`tyndall compare` takes the difference of two images"),
     ("pixelstats", "statistics are asked for on the command line"),
     ("rendercoordsys", "all spaces are one: tyndall's error bounds do not need a camera-relative space"),
     ("wavefront", "tyndall has one way to run"),
 ];
 
 /// Options of pbrt that would change the image.
-const LATER_OPTIONS: [&str; 5] =
-    ["disablepixeljitter", "disablewavelengthjitter", "forcediffuse", "msereferenceimage", "msereferenceout"];
+const LATER_OPTIONS: [&str; 3] = ["disablepixeljitter", "disablewavelengthjitter", "forcediffuse"];
 
 /// Samplers of pbrt. tyndall has its own.
 const SAMPLERS: [&str; 7] = ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"];

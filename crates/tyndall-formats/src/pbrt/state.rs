@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use glam::{DMat4, DVec3};
 
+use super::color_space::ColorSpace;
 use super::param::Param;
 use super::params::quote;
 use crate::desc::{AreaLightDesc, MaterialId, MediumInterface};
@@ -26,6 +27,9 @@ pub(super) struct Graphics {
     /// `None` until an interface is set.
     pub(super) interface: Option<MediumInterface>,
     pub(super) defaults: Defaults,
+    pub(super) color_space: ColorSpace,
+    /// Whether transformations are meant for the end of the exposure only.
+    pub(super) at_end_only: bool,
 }
 
 /// Parameters set by `Attribute` for what comes later.
@@ -43,6 +47,7 @@ pub(super) struct Defaults {
 pub(super) enum Block {
     Attribute,
     Object,
+    Import,
 }
 
 /// The current state, those that are saved, and named coordinate systems.
@@ -75,6 +80,7 @@ impl State {
         let (begin, end) = match block {
             Block::Attribute => ("AttributeBegin", "AttributeEnd"),
             Block::Object => ("ObjectBegin", "ObjectEnd"),
+            Block::Import => ("Import", "the imported file ends"),
         };
         match self.saved.last() {
             Some((open, _, _)) if *open == block => {}
@@ -124,6 +130,14 @@ impl State {
     /// Names a coordinate system.
     pub(super) fn name(&mut self, name: &str, to_world: DMat4) {
         self.coordinate_systems.insert(name.into(), to_world);
+    }
+
+    pub(super) fn named_spaces(&self) -> BTreeMap<String, DMat4> {
+        self.coordinate_systems.clone()
+    }
+
+    pub(super) fn restore_named_spaces(&mut self, named: BTreeMap<String, DMat4>) {
+        self.coordinate_systems = named;
     }
 
     /// Makes a named coordinate system the current transformation.

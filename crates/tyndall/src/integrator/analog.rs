@@ -41,8 +41,8 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
     let (mut radiance, mut throughput) = (0.0, 1.0);
     let mut history = History::default();
     loop {
-        let (sigma_t, sigma_s) =
-            inside.coefficients().map_or((0.0, 0.0), |c| (c.sigma_t.lane(lane), c.sigma_s.lane(lane)));
+        let [sigma_t, sigma_s, source] =
+            inside.coefficients().map_or([0.0; 3], |c| [c.sigma_t, c.sigma_s, c.source].map(|l| l.lane(lane)));
         let flight = if sigma_t > 0.0 { -sampler.rng.next_positive().ln() / sigma_t } else { f32::INFINITY };
         tally.rays += 1;
         let hit = scene.first_surface(&ray, flight);
@@ -50,14 +50,15 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
         let (vertex, interface) = match hit {
             None if flight.is_finite() => {
                 tally.collisions += 1;
-                if sampler.next_1d() * sigma_t >= sigma_s {
-                    return radiance; // absorbed
-                }
                 let Inside::Medium { id, phase, .. } = inside else { return radiance };
                 let p = ray.at(flight);
                 if !scene.may_contain(id, p) {
                     tally.leaks += 1;
                     return radiance;
+                }
+                if sampler.next_1d() * sigma_t >= sigma_s {
+                    // Absorbed; and what absorbs emits L_e.
+                    return if source > 0.0 { radiance + throughput * source / (sigma_t - sigma_s) } else { radiance };
                 }
                 (Vertex::Medium { p, dir: ray.dir, phase }, None)
             }

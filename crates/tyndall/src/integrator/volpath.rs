@@ -93,13 +93,25 @@ impl Path {
                     }
                 }
             }
-            Event::Scatter(p) => {
+            Event::Scatter { p, emitted } => {
+                self.find_emission(emitted, sink);
                 let Inside::Medium { phase, .. } = self.inside else { return Status::Done };
                 self.history.order += 1;
                 let vertex = Vertex::Medium { p, dir: self.ray.dir, phase };
                 self.scatter(scene, settings, &vertex, false, sink, tally)
             }
-            Event::Absorb => Status::Done,
+            Event::Absorb { emitted } => {
+                self.find_emission(emitted, sink);
+                Status::Done
+            }
+        }
+    }
+
+    /// Light from the medium, at a collision.
+    #[inline]
+    fn find_emission(&self, emitted: Lanes, sink: &mut impl Sink) {
+        if !emitted.is_zero() {
+            sink.add(emitted, &self.history);
         }
     }
 

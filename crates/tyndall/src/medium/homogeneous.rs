@@ -1,7 +1,8 @@
 //! A medium with the same coefficients everywhere.
 //!
 //! Transmittance over a distance `d` is `exp(−σ_t d)` (Beer–Lambert), free flights have the density
-//! `σ_t exp(−σ_t s)`, a collision scatters with the albedo `σ_s / σ_t`.
+//! `σ_t exp(−σ_t s)`, a collision scatters with the albedo `σ_s / σ_t`. What absorbs may also emit: along a ray the radiance
+//! grows by `σ_a L_e` [W·m⁻²·sr⁻¹ per length], so that a thick medium that only absorbs shines with `L_e` (Kirchhoff).
 
 use crate::{
     phase::Phase,
@@ -15,6 +16,8 @@ pub struct Homogeneous {
     pub sigma_a: Spectrum,
     /// Scattering [1/length].
     pub sigma_s: Spectrum,
+    /// Radiance that it emits per unit of absorption, if any [W·m⁻²·sr⁻¹].
+    pub emission: Option<Spectrum>,
     /// Where scattered light goes.
     pub phase: Phase,
 }
@@ -26,14 +29,17 @@ pub struct Coefficients {
     pub sigma_t: Lanes,
     /// Scattering [1/length].
     pub sigma_s: Lanes,
+    /// Emission `σ_a L_e` [W·m⁻²·sr⁻¹ per length].
+    pub source: Lanes,
 }
 
 impl Homogeneous {
     /// The coefficients in the lanes of a path.
     #[inline]
     pub fn coefficients(&self, wavelengths: &Wavelengths) -> Coefficients {
-        let sigma_s = self.sigma_s.eval(wavelengths);
-        Coefficients { sigma_t: self.sigma_a.eval(wavelengths) + sigma_s, sigma_s }
+        let (sigma_a, sigma_s) = (self.sigma_a.eval(wavelengths), self.sigma_s.eval(wavelengths));
+        let source = self.emission.as_ref().map_or(Lanes::ZERO, |le| sigma_a * le.eval(wavelengths));
+        Coefficients { sigma_t: sigma_a + sigma_s, sigma_s, source }
     }
 }
 

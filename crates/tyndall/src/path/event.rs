@@ -6,6 +6,7 @@ use crate::{
     medium::Inside,
     scene::Scene,
     shape::Interaction,
+    spectrum::Lanes,
     tally::Tally,
 };
 
@@ -16,10 +17,18 @@ pub enum Event {
     Escape,
     /// A surface is reached.
     Surface(Interaction),
-    /// A collision that scatters, at this point.
-    Scatter(Vec3),
+    /// A collision that scatters.
+    Scatter {
+        /// Where [length].
+        p: Vec3,
+        /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
+        emitted: Lanes,
+    },
     /// A collision in a medium that only absorbs; or a path that has leaked out of its medium, which is tallied.
-    Absorb,
+    Absorb {
+        /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
+        emitted: Lanes,
+    },
 }
 
 impl Path {
@@ -67,14 +76,19 @@ impl Path {
         let p = self.ray.at(flight);
         if !scene.may_contain(*id, p) {
             tally.leaks += 1;
-            return Event::Absorb;
+            return Event::Absorb { emitted: Lanes::ZERO };
         }
         tally.collisions += 1;
-        if coefficients.sigma_s.is_zero() {
-            return Event::Absorb;
-        }
         let transmittance = coefficients.transmittance(flight);
+        let emitted = if coefficients.source.is_zero() {
+            Lanes::ZERO
+        } else {
+            coefficients.source * self.weights.volume_emission(coefficients.sigma_t, transmittance)
+        };
+        if coefficients.sigma_s.is_zero() {
+            return Event::Absorb { emitted };
+        }
         self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
-        Event::Scatter(p)
+        Event::Scatter { p, emitted }
     }
 }

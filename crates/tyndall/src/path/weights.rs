@@ -64,6 +64,13 @@ impl PathWeights {
         self.r_l = None;
     }
 
+    /// The weight of what a medium emits at a collision, per length, where [`Self::collide`] has not been called yet. No
+    /// light sample finds it.
+    #[inline]
+    pub fn volume_emission(&self, sigma_t: Lanes, transmittance: Lanes) -> Lanes {
+        self.beta * transmittance / (self.r_u * sigma_t * transmittance).mean()
+    }
+
     /// The path took a direction drawn with density `pdf`, with weight `f·cos / pdf` in each lane.
     #[inline]
     pub fn scatter(&mut self, weight: Lanes, pdf: f32) {

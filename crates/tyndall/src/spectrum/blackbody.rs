@@ -39,6 +39,16 @@ impl Blackbody {
     }
 }
 
+/// The luminance `∫ B ȳ dλ / ∫ ȳ dλ` of a black body of `kelvin` [K] > 0 in physical units, `B` in W·m⁻²·sr⁻¹·nm⁻¹:
+/// what [`Blackbody`] leaves out.
+pub fn luminance(kelvin: f64) -> f64 {
+    // First radiation constant of spectral radiance, 2hc² [W·m²·sr⁻¹], of which a λ⁵ in nm takes 10⁴⁵ and a nm 10⁻⁹.
+    const C1: f64 = 1.191_042_972e-16 * 1e36;
+    let end = f64::from(cie::LAMBDA_MAX);
+    let at_end = C1 / (end.powi(5) * (C2 / (end * kelvin)).exp_m1());
+    at_end * cie::xyz(&[], |lambda| relative(f64::from(lambda), kelvin))[1]
+}
+
 /// `B(λ, T)/B(830 nm, T)`, written so that nothing overflows however cold the body is.
 fn relative(lambda: f64, kelvin: f64) -> f64 {
     let end = f64::from(cie::LAMBDA_MAX);
@@ -63,6 +73,15 @@ mod tests {
         let a = Blackbody::new(2855.54);
         let [x, y, z] = cie::xyz(&[], |l| f64::from(a.at(l)));
         assert!((x / (x + y + z) - 0.44758).abs() < 1e-4 && (y / (x + y + z) - 0.40745).abs() < 1e-4);
+    }
+
+    /// The candela was defined by platinum at its freezing point, 2042 K: 60 cd/cm² (CGPM 1948), with 683 lm/W, and
+    /// ∫ȳ dλ = 106.857 nm: 6·10⁵ cd/m² / (683 lm/W · 106.857 nm) = 8.221 W·m⁻²·sr⁻¹·nm⁻¹. The temperature is known to
+    /// 0.1 %, of which luminance makes c₂/(0.6 µm · 2042 K) = 12 times as much.
+    #[test]
+    fn freezing_platinum_is_as_bright_as_the_old_candela() {
+        let expected = 6e5 / (683.0 * 106.857);
+        assert!((luminance(2042.0) / expected - 1.0).abs() < 0.012, "{} {expected}", luminance(2042.0));
     }
 
     #[test]

@@ -56,7 +56,12 @@ pub(crate) fn glass(eta: f32, alpha: f32) -> Material {
 
 pub(crate) fn medium(sigma_a: [f32; 3], sigma_s: [f32; 3], g: f32) -> Homogeneous {
     let phase = if g == 0.0 { Phase::Isotropic(Isotropic) } else { Phase::henyey_greenstein(g).unwrap() };
-    Homogeneous { sigma_a: Spectrum::unbounded_rgb(sigma_a), sigma_s: Spectrum::unbounded_rgb(sigma_s), phase }
+    Homogeneous {
+        sigma_a: Spectrum::unbounded_rgb(sigma_a),
+        sigma_s: Spectrum::unbounded_rgb(sigma_s),
+        emission: None,
+        phase,
+    }
 }
 
 impl World {

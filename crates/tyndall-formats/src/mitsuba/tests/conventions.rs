@@ -1,5 +1,7 @@
 //! Conventions of Mitsuba 3: transforms, cameras, defaults.
 
+use std::path::PathBuf;
+
 use glam::{DMat4, DVec3};
 
 use super::*;
@@ -236,4 +238,75 @@ fn included_files_and_directories_are_found_beside_the_scene() {
     assert_eq!(path.value, room.join("parts/meshes/a.ply"));
     assert_eq!(s.shapes[1].material.value, s.shapes[2].material.value);
     assert!(endless.contains("files include each other more than 15 deep"), "{endless}");
+}
+
+/// Every form of `<spectrum>` as light, and what it is.
+#[test]
+fn spectra_are_written_as_a_value_as_pairs_as_a_file_or_by_type() {
+    let intensity = |spectrum: &str| match light(&format!("<emitter type=\"point\">{spectrum}</emitter>")).kind {
+        LightKind::Point { intensity } => intensity.spectrum.value,
+        other => panic!("{other:?}"),
+    };
+    let samples =
+        |lambda: &[f64], values: &[f64]| SpectrumDesc::Samples { lambda: lambda.into(), values: values.into() };
+    for (written, read) in [
+        // Equal energy: not the white of sRGB.
+        ("<spectrum name=\"intensity\" value=\"2\"/>", samples(&[360.0, 830.0], &[2.0, 2.0])),
+        (
+            "<spectrum name=\"intensity\" value=\"400:1, 500:2.5 700:0\"/>",
+            samples(&[400.0, 500.0, 700.0], &[1.0, 2.5, 0.0]),
+        ),
+        ("<spectrum name=\"intensity\" filename=\"lamp.spd\"/>", SpectrumDesc::File(PathBuf::from("lamp.spd"))),
+        (
+            "<spectrum name=\"intensity\" type=\"blackbody\"><float name=\"temperature\" value=\"5000\"/></spectrum>",
+            SpectrumDesc::Blackbody { kelvin: 5000.0 },
+        ),
+        (
+            "<spectrum name=\"intensity\" type=\"d65\"><float name=\"scale\" value=\"3\"/></spectrum>",
+            SpectrumDesc::Rgb([3.0; 3]),
+        ),
+        (
+            "<spectrum name=\"intensity\" type=\"regular\"><float name=\"wavelength_min\" value=\"400\"/>\
+             <float name=\"wavelength_max\" value=\"700\"/><string name=\"values\" value=\"1, 2, 3, 4\"/></spectrum>",
+            samples(&[400.0, 500.0, 600.0, 700.0], &[1.0, 2.0, 3.0, 4.0]),
+        ),
+        (
+            "<spectrum name=\"intensity\" type=\"irregular\"><string name=\"wavelengths\" value=\"400, 650\"/>\
+             <string name=\"values\" value=\"1, 2\"/></spectrum>",
+            samples(&[400.0, 650.0], &[1.0, 2.0]),
+        ),
+    ] {
+        assert_eq!(intensity(written), read, "{written}");
+    }
+    // What is no light is grey.
+    let MaterialKind::Diffuse { reflectance } =
+        material("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"0.25\"/></bsdf>").kind
+    else {
+        panic!()
+    };
+    assert_eq!(reflectance.value, Varying::constant(0.25));
+}
+
+#[test]
+fn a_medium_takes_constant_volumes_and_rayleigh_scattering() {
+    let medium = &parsed(&scene(
+        "<medium type=\"homogeneous\"><volume type=\"constvolume\" name=\"sigma_t\">\
+         <rgb name=\"value\" value=\"1, 2, 3\"/></volume><phase type=\"rayleigh\"/></medium>",
+    ))
+    .media[0];
+    let Coefficients::ExtinctionAlbedo { sigma_t, .. } = &medium.coefficients else { panic!() };
+    assert_eq!((&sigma_t.value, medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), PhaseDesc::Rayleigh));
+}
+
+/// Mitsuba's conductor without a material has eta = 0 and k = 1 unless told.
+#[test]
+fn a_conductor_may_leave_out_one_part_of_its_index() {
+    let optics = |parameters: &str| match material(&format!("<bsdf type=\"conductor\">{parameters}</bsdf>")).kind {
+        MaterialKind::Conductor { optics: ConductorOptics::EtaK { eta, k }, .. } => (eta.value, k.value),
+        other => panic!("{other:?}"),
+    };
+    let constant = Varying::constant;
+    assert_eq!(optics("<float name=\"eta\" value=\"2\"/>"), (constant(2.0), constant(1.0)));
+    let k = "<string name=\"material\" value=\"none\"/><float name=\"k\" value=\"3\"/>";
+    assert_eq!(optics(k), (constant(0.0), constant(3.0)));
 }

@@ -35,7 +35,7 @@ const FAULTS: &[(&str, &str)] = &[
     ),
     (
         r#"<shape type="bsplinecurve"/>"#,
-        r#"2:14: the shape "bsplinecurve" is not known yet | known are "sphere", "rectangle", "cube", "disk", "obj", "ply", "shapegroup", "instance""#,
+        r#"2:14: the shape "bsplinecurve" is not known yet | known are "sphere", "rectangle", "cube", "disk", "obj", "ply", "serialized", "shapegroup", "instance""#,
     ),
     (
         r#"<shape type="sphere"><float name="radios" value="1"/></shape>"#,

@@ -235,3 +235,71 @@ fn an_include_stands_for_its_file_relative_to_the_scene() {
     let message = looped.unwrap_err().errors[0].message.clone();
     assert!(message.ends_with("loop.pbrt includes itself"), "{message}");
 }
+
+#[test]
+fn a_colour_space_holds_for_the_colours_of_its_scope() {
+    let desc = world(
+        r#"AttributeBegin ColorSpace "rec2020" Material "diffuse" "rgb reflectance" [ 0.5 0.4 0.3 ] AttributeEnd
+        Material "diffuse" "rgb reflectance" [ 0.5 0.4 0.3 ]"#,
+    );
+    let colour = |i: usize| match &desc.materials[i].kind {
+        MaterialKind::Diffuse { reflectance } => match reflectance.value {
+            Varying::Everywhere(SpectrumDesc::Rgb(rgb)) => rgb,
+            ref other => panic!("{other:?}"),
+        },
+        other => panic!("{other:?}"),
+    };
+    // 1.6605 · 0.5 − 0.5876 · 0.4 − 0.0728 · 0.3 (ITU-R BT.2087) is more than the greatest component, which holds it.
+    assert_eq!(colour(0)[0], 0.5);
+    assert!((colour(0)[2] - (-0.0182 * 0.5 - 0.1006 * 0.4 + 1.1187 * 0.3)).abs() < 1e-3);
+    assert_eq!(colour(1), [0.5, 0.4, 0.3]);
+}
+
+#[test]
+fn what_moves_stands_where_it_is_at_the_start_time() {
+    let desc = world(
+        r#"ActiveTransform StartTime Translate 1 0 0 ActiveTransform EndTime Translate 5 0 0 ActiveTransform All
+        Translate 0 2 0 Shape "sphere""#,
+    );
+    assert_eq!(desc.shapes[0].to_world, DMat4::from_translation(DVec3::new(1.0, 2.0, 0.0)));
+    assert!(desc.ignored.iter().any(|i| i.reason.contains("start time")));
+}
+
+#[test]
+fn an_import_keeps_what_it_makes_and_forgets_what_it_sets() {
+    let dir = std::env::temp_dir().join(format!("tyndall-import-{}", std::process::id()));
+    std::fs::create_dir_all(&dir).unwrap();
+    std::fs::write(
+        dir.join("part.pbrt"),
+        r#"Translate 1 0 0 CoordinateSystem "there" MakeNamedMaterial "red" "string type" "diffuse" Shape "sphere""#,
+    )
+    .unwrap();
+    let main = |text: &str| {
+        std::fs::write(dir.join("main.pbrt"), format!("WorldBegin {text}")).unwrap();
+        load(&dir.join("main.pbrt"), &[]).map(|(desc, _)| desc).map_err(|e| e.to_string())
+    };
+    let imported = main(r#"Import "part.pbrt" NamedMaterial "red" Shape "sphere""#).unwrap();
+    let forgotten = main(r#"Import "part.pbrt" CoordSysTransform "there""#).unwrap_err();
+    std::fs::write(dir.join("part.pbrt"), "AttributeBegin").unwrap();
+    let open = main(r#"Import "part.pbrt""#).unwrap_err();
+    std::fs::remove_dir_all(&dir).unwrap();
+    assert_eq!(imported.shapes[0].to_world, DMat4::from_translation(DVec3::X));
+    assert_eq!(imported.shapes[1].to_world, DMat4::IDENTITY);
+    assert!(forgotten.contains("there is no coordinate system"), "{forgotten}");
+    assert!(open.contains("block"), "{open}");
+}
+
+#[test]
+fn a_preset_is_reduced_unless_asked_for_in_full_and_a_medium_may_shine() {
+    let desc = world(
+        r#"MakeNamedMedium "a" "string type" "homogeneous" "string preset" "Skimmilk"
+        MakeNamedMedium "b" "string type" "homogeneous" "string preset" "Skimmilk" "bool reduced" false
+        MakeNamedMedium "c" "string type" "homogeneous" "rgb Le" [ 1 2 3 ] "float Lescale" 4"#,
+    );
+    for (i, expected) in [true, false].into_iter().enumerate() {
+        let Coefficients::Preset { reduced, .. } = &desc.media[i].coefficients else { panic!() };
+        assert_eq!(*reduced, expected);
+    }
+    let le = desc.media[2].emission.as_ref().unwrap();
+    assert_eq!((&le.spectrum.value, le.scale), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), 4.0));
+}
