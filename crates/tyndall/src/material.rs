@@ -41,6 +41,24 @@ pub enum Material {
         /// A factor on what is transmitted [1].
         transmission_tint: Spectrum,
     },
+    /// A thin sheet of a transparent medium.
+    ThinDielectric {
+        /// Index of the sheet over that of its surroundings [1].
+        eta: Index,
+        /// A factor on what is reflected [1].
+        reflection_tint: Spectrum,
+        /// A factor on what is transmitted [1].
+        transmission_tint: Spectrum,
+    },
+    /// Lambertian on both sides of a thin sheet.
+    DiffuseTransmission {
+        /// Reflectance [1].
+        reflectance: Spectrum,
+        /// Transmittance [1].
+        transmittance: Spectrum,
+        /// A factor on both [1], after which each is held in 0 to 1.
+        scale: f32,
+    },
     /// No material: light passes, and may enter another medium.
     Null,
 }
@@ -90,6 +108,14 @@ impl Material {
                     .distributed(*distribution)
                     .tinted(reflection_tint.eval(wavelengths), transmission_tint.eval(wavelengths))
             }
+            Self::ThinDielectric { eta, reflection_tint, transmission_tint } => {
+                Bsdf::thin_dielectric(eta.lanes(wavelengths))
+                    .tinted(reflection_tint.eval(wavelengths), transmission_tint.eval(wavelengths))
+            }
+            Self::DiffuseTransmission { reflectance, transmittance, scale } => {
+                let scaled = |s: &Spectrum| s.eval(wavelengths).map(|v| (v * scale).clamp(0.0, 1.0));
+                Bsdf::diffuse_transmission(scaled(reflectance), scaled(transmittance))
+            }
             Self::Null => Bsdf::Null,
         }
     }
@@ -108,5 +134,11 @@ impl Index {
             Self::Constant(eta) => *eta,
             Self::Glass(glass) => glass.eta(wavelengths.hero(hero)),
         }
+    }
+
+    /// The index in every lane, where nothing bends and wavelengths go on together.
+    #[inline]
+    fn lanes(&self, wavelengths: &Wavelengths) -> Lanes {
+        Lanes::new(std::array::from_fn(|lane| self.at(wavelengths, lane)))
     }
 }

@@ -1,4 +1,4 @@
-//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `null`, and `twosided` around one that reflects.
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `null`, and `twosided` around one that reflects.
 
 use super::object::{Measure, Object, Report};
 use super::scene::Builder;
@@ -80,6 +80,11 @@ impl<'t> Builder<'t> {
             "dielectric" | "roughdielectric" => MaterialKind::Dielectric {
                 eta: relative_index(&mut object, report),
                 roughness: roughness(plugin == "roughdielectric", &mut object, report),
+                reflection_tint: object.spectrum("specular_reflectance", Measure::Part, report),
+                transmission_tint: object.spectrum("specular_transmittance", Measure::Part, report),
+            },
+            "thindielectric" => MaterialKind::ThinDielectric {
+                eta: relative_index(&mut object, report),
                 reflection_tint: object.spectrum("specular_reflectance", Measure::Part, report),
                 transmission_tint: object.spectrum("specular_transmittance", Measure::Part, report),
             },

@@ -11,17 +11,9 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 4] = ["diffuse", "conductor", "dielectric", "interface"];
-const LATER_MATERIALS: [&str; 8] = [
-    "coatedconductor",
-    "coateddiffuse",
-    "diffusetransmission",
-    "hair",
-    "measured",
-    "mix",
-    "subsurface",
-    "thindielectric",
-];
+const MATERIALS: [&str; 6] =
+    ["diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "interface"];
+const LATER_MATERIALS: [&str; 6] = ["coatedconductor", "coateddiffuse", "hair", "measured", "mix", "subsurface"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -73,6 +65,8 @@ impl Reader {
             "diffuse" => diffuse(&mut p),
             "conductor" => conductor(&mut p),
             "dielectric" => dielectric(&mut p),
+            "thindielectric" => thin_dielectric(&mut p),
+            "diffusetransmission" => diffuse_transmission(&mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -119,6 +113,22 @@ fn dielectric(p: &mut Params) -> MaterialKind {
         roughness: roughness(p),
         reflection_tint: None,
         transmission_tint: None,
+    }
+}
+
+fn thin_dielectric(p: &mut Params) -> MaterialKind {
+    MaterialKind::ThinDielectric {
+        eta: p.spectrum_or_float("eta", SpectrumDesc::Constant(1.5)),
+        reflection_tint: None,
+        transmission_tint: None,
+    }
+}
+
+fn diffuse_transmission(p: &mut Params) -> MaterialKind {
+    MaterialKind::DiffuseTransmission {
+        reflectance: p.spectrum("reflectance", SpectrumDesc::Constant(0.25)),
+        transmittance: p.spectrum("transmittance", SpectrumDesc::Constant(0.25)),
+        scale: p.not_negative("scale", 1.0).value,
     }
 }
 
