@@ -42,6 +42,24 @@ pub enum Material {
         /// A factor on what is transmitted [1].
         transmission_tint: Texture,
     },
+    /// A thin sheet of a transparent medium.
+    ThinDielectric {
+        /// Index of the sheet over that of its surroundings [1].
+        eta: Index,
+        /// A factor on what is reflected [1].
+        reflection_tint: Texture,
+        /// A factor on what is transmitted [1].
+        transmission_tint: Texture,
+    },
+    /// Lambertian on both sides of a thin sheet.
+    DiffuseTransmission {
+        /// Reflectance [1].
+        reflectance: Texture,
+        /// Transmittance [1].
+        transmittance: Texture,
+        /// A factor on both [1], after which each is held in 0 to 1.
+        scale: f32,
+    },
     /// No material: light passes, and may enter another medium.
     Null,
 }
@@ -123,6 +141,14 @@ impl Material {
                     .distributed(*distribution)
                     .tinted(reflection_tint.eval(at, wavelengths), transmission_tint.eval(at, wavelengths))
             }
+            Self::ThinDielectric { eta, reflection_tint, transmission_tint } => {
+                Bsdf::thin_dielectric(eta.lanes(wavelengths))
+                    .tinted(reflection_tint.eval(at, wavelengths), transmission_tint.eval(at, wavelengths))
+            }
+            Self::DiffuseTransmission { reflectance, transmittance, scale } => {
+                let scaled = |s: &Texture| s.eval(at, wavelengths).map(|v| (v * scale).clamp(0.0, 1.0));
+                Bsdf::diffuse_transmission(scaled(reflectance), scaled(transmittance))
+            }
             Self::Null => Bsdf::Null,
         }
     }
@@ -145,5 +171,11 @@ impl Index {
                 eta => eta,
             },
         }
+    }
+
+    /// The index in every lane, where nothing bends and wavelengths go on together.
+    #[inline]
+    fn lanes(&self, wavelengths: &Wavelengths) -> Lanes {
+        Lanes::new(std::array::from_fn(|lane| self.at(wavelengths, lane)))
     }
 }

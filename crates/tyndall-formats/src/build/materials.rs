@@ -37,6 +37,20 @@ impl Builder<'_> {
                     transmission_tint: self.tint(transmission_tint.as_ref())?,
                 })
             }
+            MaterialKind::ThinDielectric { eta, reflection_tint, transmission_tint } => {
+                Some(Material::ThinDielectric {
+                    eta: self.index(eta)?,
+                    reflection_tint: self.tint(reflection_tint.as_ref())?,
+                    transmission_tint: self.tint(transmission_tint.as_ref())?,
+                })
+            }
+            MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
+                Some(Material::DiffuseTransmission {
+                    reflectance: self.texture(reflectance, Measure::Share)?,
+                    transmittance: self.texture(transmittance, Measure::Share)?,
+                    scale: *scale as f32,
+                })
+            }
             MaterialKind::Interface => Some(Material::Null),
         }
     }

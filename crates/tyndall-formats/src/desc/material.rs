@@ -44,6 +44,24 @@ pub enum MaterialKind {
         /// Factor on what is transmitted, if not 1.
         transmission_tint: Option<Spanned<Varying>>,
     },
+    /// A thin sheet of a dielectric, with both of its faces: a window pane.
+    ThinDielectric {
+        /// Refractive index of the sheet relative to its surroundings.
+        eta: Spanned<SpectrumDesc>,
+        /// Factor on what is reflected, if not 1.
+        reflection_tint: Option<Spanned<Varying>>,
+        /// Factor on what is transmitted, if not 1.
+        transmission_tint: Option<Spanned<Varying>>,
+    },
+    /// Lambert's law on both sides of a thin sheet (pbrt).
+    DiffuseTransmission {
+        /// Reflectance, in [0, 1].
+        reflectance: Spanned<Varying>,
+        /// Transmittance, in [0, 1].
+        transmittance: Spanned<Varying>,
+        /// Factor on both, at least 0; each is held in [0, 1] after it.
+        scale: f64,
+    },
     /// No surface at all: a boundary of media that light passes unchanged.
     Interface,
 }

@@ -1,4 +1,5 @@
-//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `null`, and `twosided` around one that reflects.
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `null`, and `twosided` around one that
+//! reflects.
 
 use tyndall_optics::spectra;
 
@@ -78,6 +79,11 @@ impl<'t> Builder<'t> {
             "dielectric" | "roughdielectric" => MaterialKind::Dielectric {
                 eta: relative_index(&mut object, &mut self.report),
                 roughness: self.roughness(plugin == "roughdielectric", &mut object),
+                reflection_tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
+                transmission_tint: self.varying(&mut object, "specular_transmittance", Measure::Part),
+            },
+            "thindielectric" => MaterialKind::ThinDielectric {
+                eta: relative_index(&mut object, &mut self.report),
                 reflection_tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
                 transmission_tint: self.varying(&mut object, "specular_transmittance", Measure::Part),
             },

@@ -8,8 +8,8 @@
 //!
 //! What is read, with Mitsuba's defaults: sensor `perspective`, film `hdrfilm` and the filters, all samplers; integrators
 //! `path`, `volpath`, `volpathmis`, `direct`; shapes `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `shapegroup`,
-//! `instance`; bsdfs `diffuse`, `twosided`, `dielectric`, `roughdielectric`, `conductor`, `roughconductor`, `null`; emitters
-//! `area`, `constant`, `envmap`, `point`, `spot`, `directional`; medium `homogeneous` with `isotropic` and `hg`. Any other
+//! `instance`; bsdfs `diffuse`, `twosided`, `dielectric`, `roughdielectric`, `thindielectric`, `conductor`,
+//! `roughconductor`, `null`; emitters `area`, `constant`, `envmap`, `point`, `spot`, `directional`; medium `homogeneous` with `isotropic` and `hg`. Any other
 //! word is an error, with the nearest word that is known; a word that Mitsuba has and tyndall does not have yet is said to
 //! be that. Words that change nothing here are kept in [`SceneDesc::ignored`].
 //!

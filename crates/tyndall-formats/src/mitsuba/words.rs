@@ -13,7 +13,16 @@ struct Plugins {
 const PLUGINS: &[Plugins] = &[
     Plugins {
         tag: "bsdf",
-        known: &["diffuse", "twosided", "dielectric", "roughdielectric", "conductor", "roughconductor", "null"],
+        known: &[
+            "diffuse",
+            "twosided",
+            "dielectric",
+            "roughdielectric",
+            "thindielectric",
+            "conductor",
+            "roughconductor",
+            "null",
+        ],
         later: &[
             "blendbsdf",
             "bumpmap",
@@ -30,7 +39,6 @@ const PLUGINS: &[Plugins] = &[
             "principledthin",
             "retarder",
             "roughplastic",
-            "thindielectric",
         ],
     },
     Plugins {

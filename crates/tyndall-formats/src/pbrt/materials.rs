@@ -12,17 +12,9 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 4] = ["diffuse", "conductor", "dielectric", "interface"];
-const LATER_MATERIALS: [&str; 8] = [
-    "coatedconductor",
-    "coateddiffuse",
-    "diffusetransmission",
-    "hair",
-    "measured",
-    "mix",
-    "subsurface",
-    "thindielectric",
-];
+const MATERIALS: [&str; 6] =
+    ["diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "interface"];
+const LATER_MATERIALS: [&str; 6] = ["coatedconductor", "coateddiffuse", "hair", "measured", "mix", "subsurface"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -74,6 +66,8 @@ impl Reader {
             "diffuse" => diffuse(&mut p, &self.textures),
             "conductor" => conductor(&mut p, &self.textures),
             "dielectric" => dielectric(&mut p, &self.textures),
+            "thindielectric" => thin_dielectric(&mut p),
+            "diffusetransmission" => diffuse_transmission(&mut p, &self.textures),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -120,6 +114,22 @@ fn dielectric(p: &mut Params, textures: &Textures) -> MaterialKind {
         roughness: roughness(p, textures),
         reflection_tint: None,
         transmission_tint: None,
+    }
+}
+
+fn thin_dielectric(p: &mut Params) -> MaterialKind {
+    MaterialKind::ThinDielectric {
+        eta: p.spectrum_or_float("eta", SpectrumDesc::Constant(1.5)),
+        reflection_tint: None,
+        transmission_tint: None,
+    }
+}
+
+fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
+    MaterialKind::DiffuseTransmission {
+        reflectance: p.varying("reflectance", 0.25, textures),
+        transmittance: p.varying("transmittance", 0.25, textures),
+        scale: p.not_negative("scale", 1.0).value,
     }
 }
 

@@ -20,14 +20,18 @@ pub mod microfacet;
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod diffuse_transmission;
 mod rough_conductor;
 mod rough_dielectric;
+mod thin_dielectric;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
+pub use diffuse_transmission::DiffuseTransmission;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
+pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
@@ -106,6 +110,10 @@ pub enum Bsdf {
     Dielectric(Dielectric),
     /// Ground glass.
     RoughDielectric(RoughDielectric),
+    /// A window pane.
+    ThinDielectric(ThinDielectric),
+    /// A leaf, a lampshade.
+    DiffuseTransmission(DiffuseTransmission),
     /// No surface at all: a mere boundary of media.
     Null,
 }
@@ -126,6 +134,16 @@ impl Bsdf {
             }
             _ => Self::Dielectric(Dielectric::new(eta)),
         }
+    }
+
+    /// A thin sheet of index `eta` relative to its surroundings, each lane its own.
+    pub fn thin_dielectric(eta: Lanes) -> Self {
+        Self::ThinDielectric(ThinDielectric { eta, reflectance: Lanes::ONE, transmittance: Lanes::ONE })
+    }
+
+    /// Lambert's law on both sides of a sheet.
+    pub fn diffuse_transmission(reflectance: Lanes, transmittance: Lanes) -> Self {
+        Self::DiffuseTransmission(DiffuseTransmission { reflectance, transmittance })
     }
 
     /// A metal of complex index `eta + i·k` (relative to the outside, each lane its own) on both sides; rough when
@@ -158,6 +176,14 @@ impl Bsdf {
             Self::RoughConductor(model) => model.metal.reflectance *= reflectance,
             Self::Dielectric(model) => model.tint(reflectance, transmittance),
             Self::RoughDielectric(model) => model.interface.tint(reflectance, transmittance),
+            Self::ThinDielectric(model) => {
+                model.reflectance *= reflectance;
+                model.transmittance *= transmittance;
+            }
+            Self::DiffuseTransmission(model) => {
+                model.reflectance *= reflectance;
+                model.transmittance *= transmittance;
+            }
             Self::Null => {}
         }
         self
@@ -169,7 +195,12 @@ impl Bsdf {
         match &mut self {
             Self::RoughConductor(model) => model.microfacets.distribution = distribution,
             Self::RoughDielectric(model) => model.microfacets.distribution = distribution,
-            Self::Diffuse(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Null => {}
+            Self::Diffuse(_)
+            | Self::Conductor(_)
+            | Self::Dielectric(_)
+            | Self::ThinDielectric(_)
+            | Self::DiffuseTransmission(_)
+            | Self::Null => {}
         }
         self
     }
@@ -181,7 +212,11 @@ impl Bsdf {
             Self::Diffuse(model) => model.sides = sides,
             Self::Conductor(model) => model.sides = sides,
             Self::RoughConductor(model) => model.metal.sides = sides,
-            Self::Dielectric(_) | Self::RoughDielectric(_) | Self::Null => {}
+            Self::Dielectric(_)
+            | Self::RoughDielectric(_)
+            | Self::ThinDielectric(_)
+            | Self::DiffuseTransmission(_)
+            | Self::Null => {}
         }
         self
     }
@@ -193,7 +228,8 @@ impl Bsdf {
             Self::Diffuse(model) => model.eval(wo, wi),
             Self::RoughConductor(model) => model.eval(wo, wi),
             Self::RoughDielectric(model) => model.eval(wo, wi),
-            Self::Conductor(_) | Self::Dielectric(_) | Self::Null => Lanes::ZERO,
+            Self::DiffuseTransmission(model) => model.eval(wo, wi),
+            Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
 
@@ -204,7 +240,8 @@ impl Bsdf {
             Self::Diffuse(model) => model.pdf(wo, wi),
             Self::RoughConductor(model) => model.pdf(wo, wi),
             Self::RoughDielectric(model) => model.pdf(wo, wi),
-            Self::Conductor(_) | Self::Dielectric(_) | Self::Null => 0.0,
+            Self::DiffuseTransmission(model) => model.pdf(wo, wi),
+            Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
     }
 
@@ -217,6 +254,8 @@ impl Bsdf {
             Self::RoughConductor(model) => model.sample(wo, u),
             Self::Dielectric(model) => model.sample(wo, u_lobe),
             Self::RoughDielectric(model) => model.sample(wo, u_lobe, u),
+            Self::ThinDielectric(model) => model.sample(wo, u_lobe),
+            Self::DiffuseTransmission(model) => model.sample(wo, u_lobe, u),
             Self::Null => Some(straight_on(wo)),
         }
     }
@@ -224,7 +263,7 @@ impl Bsdf {
     /// Whether there is nothing but Dirac lobes, so that light sampling is in vain.
     #[inline]
     pub fn is_specular(&self) -> bool {
-        matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::Null)
+        matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null)
     }
 
     /// Whether light can pass to the other side.
@@ -234,6 +273,8 @@ impl Bsdf {
             Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) => false,
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
+            Self::ThinDielectric(model) => !model.transmittance.is_zero(),
+            Self::DiffuseTransmission(model) => !model.transmittance.is_zero(),
             Self::Null => true,
         }
     }

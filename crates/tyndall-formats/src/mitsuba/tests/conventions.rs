@@ -86,6 +86,11 @@ fn what_a_scene_leaves_out_is_as_mitsuba_documents_it() {
 
     let MaterialKind::Dielectric { eta, .. } = material("<bsdf type=\"dielectric\"/>").kind else { panic!() };
     assert_eq!(eta.value, SpectrumDesc::Constant(1.5046 / 1.000277));
+    let pane =
+        material("<bsdf type=\"thindielectric\"><rgb name=\"specular_transmittance\" value=\"0.5 0.6 0.7\"/></bsdf>");
+    let MaterialKind::ThinDielectric { eta, reflection_tint, transmission_tint } = pane.kind else { panic!() };
+    assert_eq!(eta.value, SpectrumDesc::Constant(1.5046 / 1.000277));
+    assert_eq!((reflection_tint, transmission_tint.unwrap().value), (None, SpectrumDesc::Rgb([0.5, 0.6, 0.7]).into()));
     let MaterialKind::Conductor { optics, roughness, .. } = material("<bsdf type=\"roughconductor\"/>").kind else {
         panic!()
     };

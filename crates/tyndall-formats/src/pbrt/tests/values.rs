@@ -28,6 +28,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
     let desc = world(
         r#"Shape "sphere" Shape "disk"
         Material "diffuse" Material "conductor" Material "dielectric" Material "interface"
+        Material "thindielectric" Material "diffusetransmission"
         MakeNamedMedium "m" "string type" "homogeneous"
         LightSource "point" LightSource "spot" LightSource "distant" LightSource "infinite"
         LightSource "infinite" "string filename" "sky.exr" "float scale" 2"#,
@@ -35,7 +36,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
     assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 1.0 });
     assert_eq!(desc.shapes[1].kind, ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0 });
     // The material of shapes before any Material comes first.
-    let [default, diffuse, conductor, dielectric, interface] = &desc.materials[..] else { panic!() };
+    let [default, diffuse, conductor, dielectric, interface, pane, leaf] = &desc.materials[..] else { panic!() };
     for material in [default, diffuse] {
         let MaterialKind::Diffuse { reflectance } = &material.kind else { panic!() };
         assert_eq!((&reflectance.value, material.two_sided), (&Varying::constant(0.5), true));
@@ -46,6 +47,11 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
     let MaterialKind::Dielectric { eta, roughness, .. } = &dielectric.kind else { panic!() };
     assert_eq!((&eta.value, roughness.alpha()), (&SpectrumDesc::Constant(1.5), Some([0.0; 2])));
     assert_eq!(interface.kind, MaterialKind::Interface);
+    let MaterialKind::ThinDielectric { eta, .. } = &pane.kind else { panic!() };
+    assert_eq!(eta.value, SpectrumDesc::Constant(1.5));
+    let MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } = &leaf.kind else { panic!() };
+    let quarter = &Varying::constant(0.25);
+    assert_eq!((&reflectance.value, &transmittance.value, *scale), (quarter, quarter, 1.0));
 
     let medium = &desc.media[0];
     let Coefficients::AbsorptionScattering { sigma_a, sigma_s } = &medium.coefficients else { panic!() };
