@@ -96,9 +96,9 @@ pub enum Metal {
     /// By its complex index `eta + i·k` [1].
     Index {
         /// Real part [1].
-        eta: Texture,
+        eta: Box<Texture>,
         /// Imaginary part [1].
-        k: Texture,
+        k: Box<Texture>,
     },
     /// By its reflectance at normal incidence, 0 to 1 [1].
     Reflectance(Texture),

@@ -42,7 +42,7 @@ fn bsdfs() -> Vec<(&'static str, Bsdf)> {
         ("glass, rough 0.1, Beckmann", Bsdf::dielectric(1.5, 0.1, 0.1).distributed(Distribution::Beckmann)),
         ("glass, rough 0.4 and 0.2, Beckmann", Bsdf::dielectric(1.5, 0.4, 0.2).distributed(Distribution::Beckmann)),
         ("diamond, rough 1, Beckmann", Bsdf::dielectric(2.4, 1.0, 1.0).distributed(Distribution::Beckmann)),
-        ("pane", Bsdf::thin_dielectric(Lanes::rgb(1.4, 1.5, 2.4))),
+        ("pane", Bsdf::thin_dielectric(Lanes::splat(1.5))),
         ("pane of air, tinted", Bsdf::thin_dielectric(Lanes::splat(0.75)).tinted(ochre, Lanes::rgb(0.1, 0.6, 1.0))),
         ("pane reflecting nothing", Bsdf::thin_dielectric(Lanes::splat(1.5)).tinted(Lanes::ZERO, Lanes::ONE)),
         ("lampshade", Bsdf::diffuse_transmission(ochre, Lanes::rgb(0.2, 0.15, 0.1))),
@@ -309,6 +309,23 @@ fn a_pane_reflects_what_bounces_between_its_two_faces_and_loses_nothing() {
                     "eta {eta}, {wo}: {straight:?}"
                 );
             }
+        }
+    }
+}
+
+/// Each lane has its own index, and in each what is not reflected passes: `R' + T' = 1`, though the lobes are chosen by
+/// one lane only.
+#[test]
+fn a_pane_of_many_indices_loses_nothing_in_any_lane() {
+    let pane = Bsdf::thin_dielectric(Lanes::rgb(1.4, 1.5, 2.4));
+    for i in 1..=200 {
+        let cos = i as f32 / 200.0;
+        let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+        let lobes = [0.0, 1.0 - f32::EPSILON].map(|u_lobe| pane.sample(wo, u_lobe, Vec2::ZERO).unwrap());
+        assert!(lobes[0].kind != lobes[1].kind, "{wo}: {lobes:?}");
+        for lane in 0..3 {
+            let power: f32 = lobes.iter().map(|s| s.pdf * s.weight.lane(lane)).sum();
+            assert!((power - 1.0).abs() < 8.0 * f32::EPSILON, "{wo}, lane {lane}: {power}");
         }
     }
 }

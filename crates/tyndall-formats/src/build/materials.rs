@@ -58,7 +58,8 @@ impl Builder<'_> {
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {
         match optics {
             ConductorOptics::EtaK { eta, k } => {
-                Some(Metal::Index { eta: self.texture(eta, Measure::Index)?, k: self.texture(k, Measure::Index)? })
+                let [eta, k] = [eta, k].map(|part| self.texture(part, Measure::Index).map(Box::new));
+                Some(Metal::Index { eta: eta?, k: k? })
             }
             ConductorOptics::Reflectance(r) => Some(Metal::Reflectance(self.texture(r, Measure::Share)?)),
             ConductorOptics::Mirror => Some(Metal::Mirror),

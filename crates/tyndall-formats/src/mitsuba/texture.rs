@@ -73,15 +73,14 @@ impl<'t> Builder<'t> {
         let plugin = words::plugin(element, &mut self.report)?;
         let mut object = self.object(element);
         let to_uv = object.named_transform("to_uv", &mut self.report);
-        let kind = match plugin {
-            "bitmap" => self.bitmap(&mut object, to_uv).map(TextureKind::Image),
-            _ => {
-                let of = [("color0", 0.4), ("color1", 0.2)]
-                    .map(|(name, default)| self.varying_or(&mut object, name, Measure::Part, default));
-                // Its fields are half a unit wide.
-                let [s, t] = rows(to_uv).map(|row| row.map(|v| 2.0 * v));
-                Some(TextureKind::Checkerboard { of, board: Board::Squares(MappingDesc::Uv([s, t])) })
-            }
+        let kind = if plugin == "bitmap" {
+            self.bitmap(&mut object, to_uv).map(TextureKind::Image)
+        } else {
+            let of = [("color0", 0.4), ("color1", 0.2)]
+                .map(|(name, default)| self.varying_or(&mut object, name, Measure::Part, default));
+            // Its fields are half a unit wide.
+            let [s, t] = rows(to_uv).map(|row| row.map(|v| 2.0 * v));
+            Some(TextureKind::Checkerboard { of, board: Board::Squares(MappingDesc::Uv([s, t])) })
         };
         object.finish(&mut self.report);
         kind

@@ -323,10 +323,8 @@ impl Params {
 
     /// A spectrum, or the texture of the name.
     pub(super) fn varying_opt(&mut self, name: &'static str, textures: &Textures) -> Option<Spanned<Varying>> {
-        if let Some(found) = self.texture_opt(name, textures, Texels::Colours) {
-            return found;
-        }
-        self.spectrum_opt(name).map(|s| s.map(Varying::Everywhere))
+        let named = self.texture_opt(name, textures, Texels::Colours);
+        named.or_else(|| self.spectrum_opt(name).map(|s| s.map(Varying::Everywhere)))
     }
 
     /// As [`Params::varying_opt`], or else a constant.
@@ -348,7 +346,7 @@ impl Params {
         valid: impl Fn(f64) -> bool,
     ) -> Option<Spanned<Varying>> {
         if let Some(found) = self.texture_opt(name, textures, Texels::Numbers) {
-            return found;
+            return Some(found);
         }
         let found = self.float_opt(name)?;
         if !valid(found.value) {
@@ -359,22 +357,17 @@ impl Params {
         Some(found.map(Varying::constant))
     }
 
-    /// `None` if the parameter is no texture; `Some(None)` if it names none.
-    fn texture_opt(
-        &mut self,
-        name: &'static str,
-        textures: &Textures,
-        texels: Texels,
-    ) -> Option<Option<Spanned<Varying>>> {
+    /// The texture that a parameter names. One that does not exist is reported; then the parameter counts as not given.
+    fn texture_opt(&mut self, name: &'static str, textures: &Textures, texels: Texels) -> Option<Spanned<Varying>> {
         if !self.list.iter().any(|p| p.name == name && p.kind == ParamType::Texture) {
             return None;
         }
         let named = self.take_one(name, &[ParamType::Texture])?.values.strings.first().cloned()?;
         match textures.find(&named, texels) {
-            Ok(id) => Some(Some(named.map(|_| Varying::Texture(id)))),
+            Ok(id) => Some(named.map(|_| Varying::Texture(id))),
             Err(error) => {
                 self.errors.push(error);
-                Some(None)
+                None
             }
         }
     }

@@ -46,9 +46,10 @@ impl Slabs {
     #[inline(always)]
     fn new(ray: &Ray) -> Self {
         // A component too small to invert moves the ray nowhere: any finite inverse does.
-        let inv = ray.dir.to_array().map(|d| 1.0 / d.abs().max(f32::MIN_POSITIVE).copysign(d));
-        let inv = Vec3::from_array(inv);
-        let side = [0, 1, 2].map(|axis| 2 * axis + usize::from(inv[axis] < 0.0));
+        // Written out: `map` is not always inlined, and then loses the instruction set.
+        let inverse = |d: f32| 1.0 / d.abs().max(f32::MIN_POSITIVE).copysign(d);
+        let inv = Vec3::new(inverse(ray.dir.x), inverse(ray.dir.y), inverse(ray.dir.z));
+        let side = [usize::from(inv.x < 0.0), 2 + usize::from(inv.y < 0.0), 4 + usize::from(inv.z < 0.0)];
         Self { origin: ray.origin, near: inv * (1.0 - SLACK), far: inv * (1.0 + SLACK), side }
     }
 

@@ -77,7 +77,8 @@ impl Shear {
     /// The hit on one triangle, if there is one: the same edge functions without error, and the distance.
     #[inline(always)]
     pub(super) fn resolve(&self, triangle: &[Vec3; 3]) -> Option<TriangleHit> {
-        let [a, b, c] = triangle.map(|v| self.sheared(v));
+        // Written out: `map` is not always inlined, and then loses the instruction set.
+        let (a, b, c) = (self.sheared(triangle[0]), self.sheared(triangle[1]), self.sheared(triangle[2]));
         let u = c.0 * b.1 - c.1 * b.0;
         let v = a.0 * c.1 - a.1 * c.0;
         let w = b.0 * a.1 - b.1 * a.0;
@@ -106,7 +107,8 @@ impl Shear {
         // 8u: twice the angle by which rounding turns the displaced triangle, if its aspect is 1.
         const GRAZING: f64 = 8.0 / (1 << 24) as f64;
         let (origin, dir) = (self.origin.as_dvec3(), self.dir.as_dvec3());
-        let [p0, p1, p2] = triangle.map(|v| v.as_dvec3() - origin);
+        let (p0, p1, p2) =
+            (triangle[0].as_dvec3() - origin, triangle[1].as_dvec3() - origin, triangle[2].as_dvec3() - origin);
         let (e1, e2): (DVec3, DVec3) = (p1 - p0, p2 - p0);
         let normal = e1.cross(e2);
         let slope = normal.dot(dir);
