@@ -7,7 +7,7 @@ use glam::{Affine2, DMat4, DVec2, DVec3, Vec2, Vec3};
 use tyndall::{
     math::Transform,
     texture::{
-        ImageTexture, Interpolation, Mapping2, Mapping3, Noise, Picture, Texture, Weight, Wrap,
+        Grey, ImageTexture, Interpolation, Mapping2, Mapping3, Noise, Picture, Texture, Weight, Wrap,
         noise::Kind,
         pattern::{Checkerboard, Marble},
     },
@@ -159,6 +159,7 @@ impl Builder<'_> {
             interpolation: if desc.smooth { Interpolation::Bilinear } else { Interpolation::Nearest },
             scale: desc.scale as f32,
             invert: desc.invert,
+            grey: if desc.by_luminance { Grey::Luminance } else { Grey::Mean },
             most: if measure == Measure::Share { 1.0 } else { f32::MAX },
         })
     }

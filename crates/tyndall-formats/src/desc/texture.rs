@@ -182,6 +182,8 @@ pub struct ImageDesc {
     pub scale: f64,
     /// Whether `1 − v` is meant, after the factor.
     pub invert: bool,
+    /// Whether a colour that is asked for a number gives its luminance (Mitsuba) or the mean of its channels (pbrt).
+    pub by_luminance: bool,
     /// How codes become numbers.
     pub encoding: Encoding,
 }

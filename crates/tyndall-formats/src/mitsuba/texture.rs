@@ -106,6 +106,7 @@ impl<'t> Builder<'t> {
             smooth,
             scale: 1.0,
             invert: false,
+            by_luminance: true,
             encoding: if raw { Encoding::Linear } else { Encoding::Srgb },
         })
     }

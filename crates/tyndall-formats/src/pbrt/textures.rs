@@ -228,6 +228,7 @@ impl Space {
             smooth: filter(p),
             scale: p.float("scale", 1.0).value,
             invert: p.boolean("invert", false).value,
+            by_luminance: false,
             encoding,
         }
     }

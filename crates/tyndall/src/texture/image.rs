@@ -46,6 +46,15 @@ pub enum Interpolation {
     Bilinear,
 }
 
+/// The number that a colour stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grey {
+    /// The mean of its channels (pbrt-v4).
+    Mean,
+    /// Its luminance (Mitsuba 3).
+    Luminance,
+}
+
 /// A picture on a surface: a reflectance or a number.
 #[derive(Debug, Clone)]
 pub struct ImageTexture {
@@ -61,6 +70,8 @@ pub struct ImageTexture {
     pub scale: f32,
     /// Whether a value `v` stands for `1 − v`, after the factor.
     pub invert: bool,
+    /// What number a colour stands for.
+    pub grey: Grey,
     /// The greatest value, for what must be a share of light [1].
     pub most: f32,
 }
@@ -75,6 +86,16 @@ impl ImageTexture {
             let v = v * self.scale;
             (if self.invert { 1.0 - v } else { v }).clamp(0.0, self.most)
         })
+    }
+
+    /// One number at a point.
+    #[inline]
+    pub fn number(&self, at: &TexturePoint) -> f32 {
+        let rgb = self.rgb(at);
+        match self.grey {
+            Grey::Mean => super::mean(rgb),
+            Grey::Luminance => srgb::luminance(rgb),
+        }
     }
 
     /// The lanes of a path at a point.
@@ -168,6 +189,24 @@ mod tests {
         assert_eq!(at(0.5, 0.25), 0.5);
     }
 
+    /// Rec. 709: a pure green of 1 has the luminance 0.7152, and the mean 1/3.
+    #[test]
+    fn a_colour_stands_for_its_mean_or_for_its_luminance() {
+        let texture = |grey| ImageTexture {
+            picture: Arc::new(Picture { width: 1, height: 1, pixels: vec![[0.0, 1.0, 0.0]] }),
+            mapping: Mapping2::UV,
+            wrap: Wrap::Repeat,
+            interpolation: Interpolation::Nearest,
+            scale: 1.0,
+            invert: false,
+            grey,
+            most: 1.0,
+        };
+        let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z };
+        assert!((texture(Grey::Mean).number(&at) - 1.0 / 3.0).abs() < 1e-6);
+        assert!((texture(Grey::Luminance).number(&at) - 0.7152).abs() < 1e-4);
+    }
+
     #[test]
     fn t_runs_upwards_and_inverted_values_are_one_less_the_value() {
         let texture = |invert| ImageTexture {
@@ -177,6 +216,7 @@ mod tests {
             interpolation: Interpolation::Nearest,
             scale: 0.25,
             invert,
+            grey: Grey::Mean,
             most: 1.0,
         };
         let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v), n: Vec3::Z };

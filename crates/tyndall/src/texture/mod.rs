@@ -2,7 +2,7 @@
 //!
 //! A [`Texture`] is a tree of patterns and pictures with spectra at its leaves. It answers in two ways: [`Texture::eval`]
 //! gives the four lanes of a path, [`Texture::scalar`] one number (a roughness, an opacity, a weight). Where a number is
-//! asked of a colour it is the mean of the three channels, as in pbrt-v4.
+//! asked of a colour it is the mean of the three channels; a picture says whether it is its luminance instead ([`Grey`]).
 //!
 //! Textures are looked up at points: there are no ray differentials, and the samples of a pixel do the filtering. Hence
 //! pbrt's `trilinear` and `ewa` filters become `bilinear`, and its noise always sums all octaves.
@@ -16,7 +16,7 @@ pub mod pattern;
 
 use std::sync::Arc;
 
-pub use image::{ImageTexture, Interpolation, Picture, Wrap};
+pub use image::{Grey, ImageTexture, Interpolation, Picture, Wrap};
 pub use mapping::{Mapping2, Mapping3};
 pub use noise::Noise;
 
@@ -180,7 +180,7 @@ impl Texture {
         match self {
             Self::Constant(Spectrum::Constant(value)) => *value,
             Self::Constant(spectrum) => mean(spectrum.rgb()),
-            Self::Image(image) => mean(image.rgb(at)),
+            Self::Image(image) => image.number(at),
             Self::Marble(marble) => mean(marble.rgb(at)),
             Self::Noise(noise) => noise.at(at.p),
             Self::Scale(_) | Self::Mix { .. } | Self::Bilinear { .. } => self.scalar(at),
