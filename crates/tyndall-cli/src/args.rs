@@ -42,8 +42,8 @@ Examples:
 Ctrl-C ends the render and saves what is done; a second Ctrl-C leaves at once. The image so far is also saved every
 ten seconds. Exit status: 0 done, 2 failed, 130 stopped by Ctrl-C.")]
 pub(crate) struct RenderOptions {
-    /// The scene: .pbrt (pbrt-v4) or .xml (Mitsuba 3)
-    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) input: SceneOptions,
     /// Where to write: a name in .exr (numbers) or .png (for the eye), or one without ending for both; repeatable
     /// [default: the scene's name, both, in this directory]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
@@ -79,9 +79,6 @@ pub(crate) struct RenderOptions {
     /// Size of the whole image instead of the scene's, for previews
     #[arg(long, value_name = "WxH", value_parser = values::resolution, help_heading = "What to render")]
     pub(crate) resolution: Option<[u32; 2]>,
-    /// Set a parameter of the scene, such as a Mitsuba $parameter; repeatable
-    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = values::definition, help_heading = "What to render")]
-    pub(crate) define: Vec<(String, String)>,
 
     /// How light is transported
     #[arg(long, value_name = "NAME", default_value = "volpath", help_heading = "How to render")]
@@ -96,6 +93,19 @@ pub(crate) struct RenderOptions {
     /// scene's, or no limit]
     #[arg(long, value_name = "N", help_heading = "How to render")]
     pub(crate) max_depth: Option<u32>,
+}
+
+/// A scene file, and how to read it.
+#[derive(Debug, Default, Args)]
+pub(crate) struct SceneOptions {
+    /// The scene: .pbrt (pbrt-v4) or .xml (Mitsuba 3)
+    pub(crate) scene: PathBuf,
+    /// Set a parameter of the scene, such as a Mitsuba $parameter; repeatable
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = values::definition, help_heading = "What to render")]
+    pub(crate) define: Vec<(String, String)>,
+    /// Leave out what tyndall does not know yet, with a warning, instead of refusing the scene
+    #[arg(long, help_heading = "What to render")]
+    pub(crate) lenient: bool,
 }
 
 /// From radiance to a PNG.
@@ -177,11 +187,8 @@ pub(crate) struct LectureOptions {
 /// Tells what is in a scene.
 #[derive(Debug, Args)]
 pub(crate) struct InfoOptions {
-    /// The scene: .pbrt (pbrt-v4) or .xml (Mitsuba 3)
-    pub(crate) scene: PathBuf,
-    /// Set a parameter of the scene, such as a Mitsuba $parameter; repeatable
-    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = values::definition)]
-    pub(crate) define: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) input: SceneOptions,
 }
 
 /// Estimators by the names of the command line.

@@ -1,16 +1,16 @@
 //! From a scene file to a scene, and the names of everything it was read from.
 
-use std::{
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{io::IsTerminal, path::PathBuf, time::Instant};
 
 use tyndall::{film::Crop, scene::Scene, spectrum::ColorMode};
 use tyndall_formats::{
-    desc::{LightKind, SceneDesc, ShapeKind},
+    desc::SceneDesc,
+    error::{Diagnostics, Unsupported},
     film::hash,
     source::SourceMap,
 };
+
+use crate::args::SceneOptions;
 
 /// A scene, ready to be rendered, and what its file says about rendering it.
 #[derive(Debug)]
@@ -18,6 +18,8 @@ pub(crate) struct Loaded {
     pub(crate) scene: Scene,
     /// What the user wrote.
     pub(crate) desc: SceneDesc,
+    /// The texts that it was written in.
+    pub(crate) sources: SourceMap,
     pub(crate) crop: Option<Crop>,
     /// Hash over all files and definitions.
     pub(crate) hash: String,
@@ -28,14 +30,10 @@ pub(crate) struct Loaded {
 }
 
 /// Reads and builds a scene, at another resolution if asked.
-pub(crate) fn load(
-    path: &Path,
-    definitions: &[(String, String)],
-    resolution: Option<[u32; 2]>,
-    color: ColorMode,
-) -> anyhow::Result<Loaded> {
+pub(crate) fn load(input: &SceneOptions, resolution: Option<[u32; 2]>, color: ColorMode) -> anyhow::Result<Loaded> {
     let start = Instant::now();
-    let (mut desc, sources) = tyndall_formats::load(path, definitions)?;
+    let unsupported = if input.lenient { Unsupported::Warn } else { Unsupported::Refuse };
+    let (mut desc, sources) = tyndall_formats::load(&input.scene, &input.define, unsupported)?;
     if let Some([width, height]) = resolution {
         resize(&mut desc, width, height);
     }
@@ -44,9 +42,19 @@ pub(crate) fn load(
     let start = Instant::now();
     let (scene, sources) = tyndall_formats::build::build(&desc, sources, color)?;
     let build_seconds = start.elapsed().as_secs_f64();
-    let hash = hash::of_scene(files(&desc, &sources), definitions)?;
+    let hash = hash::of_scene(files(&desc, &sources), &input.define)?;
     let crop = tyndall_formats::build::crop(&desc.film);
-    Ok(Loaded { scene, desc, crop, hash, load_seconds, build_seconds })
+    Ok(Loaded { scene, desc, sources, crop, hash, load_seconds, build_seconds })
+}
+
+impl Loaded {
+    /// Tells what was left out of the scene.
+    pub(crate) fn warn(&self) {
+        if !self.desc.warnings.is_empty() {
+            let warnings = Diagnostics::new(self.desc.warnings.clone(), self.sources.clone());
+            eprintln!("{}\n", warnings.render(std::io::stderr().is_terminal()));
+        }
+    }
 }
 
 /// Another resolution shows the same picture in other pixels: the scene's crop goes with it.
@@ -62,17 +70,8 @@ fn resize(desc: &mut SceneDesc, width: u32, height: u32) {
     (film.width, film.height) = (width, height);
 }
 
-/// Every file that the scene was read from: its texts, meshes and environment images, in the order of their mention.
+/// Every file that the scene was read from: its texts, then what they name.
 fn files(desc: &SceneDesc, sources: &SourceMap) -> Vec<PathBuf> {
-    let texts = sources.files().iter().map(|file| file.path.clone());
-    let shapes = desc.shapes.iter().chain(desc.groups.iter().flat_map(|group| &group.shapes));
-    let meshes = shapes.filter_map(|shape| match &shape.kind {
-        ShapeKind::Ply { path, .. } | ShapeKind::Obj { path, .. } => Some(path.value.clone()),
-        _ => None,
-    });
-    let images = desc.lights.iter().filter_map(|light| match &light.kind {
-        LightKind::Environment { path, .. } => Some(path.value.clone()),
-        _ => None,
-    });
-    texts.chain(meshes).chain(images).collect()
+    let texts = sources.files().iter().map(|file| &file.path);
+    texts.chain(desc.files()).cloned().collect()
 }

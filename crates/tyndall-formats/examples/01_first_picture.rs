@@ -21,6 +21,7 @@ use tyndall::{
 };
 use tyndall_formats::{
     build::build,
+    error::Unsupported,
     film::{Curve, Image, Metadata, Tone, png},
     load,
 };
@@ -35,7 +36,8 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
     let scene_file = args().nth(1).ok_or("name a scene and a picture")?;
     let picture = args().nth(2).ok_or("name a picture too, in .png")?;
 
-    let (desc, sources) = load(Path::new(&scene_file), &[]).map_err(|faults| faults.render(true))?;
+    let (desc, sources) =
+        load(Path::new(&scene_file), &[], Unsupported::Refuse).map_err(|faults| faults.render(true))?;
     let (scene, _) = build(&desc, sources, ColorMode::Rgb).map_err(|faults| faults.render(true))?;
 
     let settings = Settings { spp: 16, seed: 1, ..Settings::default() };

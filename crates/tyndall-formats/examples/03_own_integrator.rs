@@ -25,6 +25,7 @@ use tyndall::{
 };
 use tyndall_formats::{
     build::build,
+    error::Unsupported,
     film::{Curve, Image, Metadata, Tone, png},
     load,
 };
@@ -51,7 +52,8 @@ impl Integrator for Occlusion {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [scene_file, picture] = [1, 2].map(|i| args().nth(i).unwrap_or_default());
-    let (desc, sources) = load(Path::new(&scene_file), &[]).map_err(|faults| faults.render(false))?;
+    let (desc, sources) =
+        load(Path::new(&scene_file), &[], Unsupported::Refuse).map_err(|faults| faults.render(false))?;
     let (scene, _) = build(&desc, sources, ColorMode::Mono).map_err(|faults| faults.render(false))?;
     let settings = Settings { spp: 64, ..Settings::default() };
     let rendering = render(&scene, &Occlusion { reach: 1.0 }, &settings, &());

@@ -12,6 +12,9 @@
 //!   |
 //! help: did you mean "radius"?
 //! ```
+//!
+//! A word that the scene language has and tyndall does not have [yet](Severity::NotYet) is an error as well, unless the
+//! user asks for [`Unsupported::Warn`] (`--lenient`): then it is left out, with a warning.
 
 use std::fmt;
 
@@ -30,9 +33,32 @@ const MOST_LISTED: usize = 20;
 /// Longer lines are not drawn, only located \[bytes\].
 const LONGEST_LINE: usize = 1 << 16;
 
+/// How much a fault matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The scene is wrong.
+    Error,
+    /// The scene is right, and tyndall cannot do this yet.
+    NotYet,
+    /// The scene can be rendered, and something about it is worth knowing.
+    Warning,
+}
+
+/// What becomes of words that are not supported yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Unsupported {
+    /// They are errors.
+    #[default]
+    Refuse,
+    /// They are warnings, and what they say is left out of the scene.
+    Warn,
+}
+
 /// One fault of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
+    /// Whether it can be rendered nevertheless.
+    pub severity: Severity,
     /// The words at fault. `None` when it is the file itself.
     pub span: Option<Span>,
     /// What is wrong, in one sentence without a full stop.
@@ -46,12 +72,22 @@ pub struct SceneError {
 impl SceneError {
     /// A fault of the scene as a whole.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { span: None, message: message.into(), help: None, related: Vec::new() }
+        Self { severity: Severity::Error, span: None, message: message.into(), help: None, related: Vec::new() }
     }
 
     /// A fault of the words at `span`.
     pub fn at(span: Span, message: impl Into<String>) -> Self {
         Self { span: Some(span), ..Self::new(message) }
+    }
+
+    /// Words that the language has and tyndall does not have yet.
+    pub fn not_yet(span: Span, message: impl Into<String>) -> Self {
+        Self { severity: Severity::NotYet, ..Self::at(span, message) }
+    }
+
+    /// Something about the words at `span` that is worth knowing.
+    pub fn warning(span: Span, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::at(span, message) }
     }
 
     /// Adds what to do.
@@ -106,11 +142,20 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 pub struct ErrorList {
     errors: Vec<SceneError>,
     dropped: usize,
+    unsupported: Unsupported,
 }
 
 impl ErrorList {
+    /// No faults yet.
+    pub fn new(unsupported: Unsupported) -> Self {
+        Self { unsupported, ..Self::default() }
+    }
+
     /// Adds a fault.
-    pub fn push(&mut self, error: SceneError) {
+    pub fn push(&mut self, mut error: SceneError) {
+        if (error.severity, self.unsupported) == (Severity::NotYet, Unsupported::Warn) {
+            error.severity = Severity::Warning;
+        }
         if self.errors.len() < MOST_KEPT {
             self.errors.push(error);
         } else {
@@ -135,9 +180,14 @@ impl ErrorList {
         self.errors.len() >= MOST_KEPT
     }
 
-    /// Whether nothing is wrong.
+    /// Whether nothing is wrong, but for what is only worth a warning.
     pub fn is_empty(&self) -> bool {
-        self.errors.is_empty()
+        self.dropped == 0 && self.warnings().len() == self.errors.len()
+    }
+
+    /// What is only worth a warning.
+    pub fn warnings(&self) -> Vec<SceneError> {
+        self.errors.iter().filter(|e| e.severity == Severity::Warning).cloned().collect()
     }
 
     /// What was found so far, in order.
@@ -154,9 +204,8 @@ impl ErrorList {
     }
 
     /// All faults with the texts they are in, from top to bottom.
-    pub fn into_diagnostics(mut self, sources: SourceMap) -> Diagnostics {
-        self.errors.sort_by_key(|e| e.span.map(|s| (s.file, s.start)));
-        Diagnostics { errors: self.errors, dropped: self.dropped, sources }
+    pub fn into_diagnostics(self, sources: SourceMap) -> Diagnostics {
+        Diagnostics { dropped: self.dropped, ..Diagnostics::new(self.errors, sources) }
     }
 }
 
@@ -172,6 +221,12 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
+    /// These faults with the texts they are in, from top to bottom.
+    pub fn new(mut errors: Vec<SceneError>, sources: SourceMap) -> Self {
+        errors.sort_by_key(|e| e.span.map(|s| (s.file, s.start)));
+        Self { errors, dropped: 0, sources }
+    }
+
     /// Draws the faults for a terminal, with colours if asked. A fault that recurs is drawn once and counted.
     pub fn render(&self, color: bool) -> String {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
@@ -201,7 +256,8 @@ impl Diagnostics {
     }
 
     fn report<'a>(&'a self, error: &'a SceneError, recurs: usize) -> Vec<Group<'a>> {
-        let title = Level::ERROR.primary_title(error.message.as_str());
+        let level = if error.severity == Severity::Warning { Level::WARNING } else { Level::ERROR };
+        let title = level.primary_title(error.message.as_str());
         let mut main = match error.span {
             Some(span) => self.place(Group::with_title(title), AnnotationKind::Primary, span, None),
             None => Group::with_title(title),

@@ -21,24 +21,101 @@ pub mod source;
 use std::path::Path;
 
 use desc::SceneDesc;
-use error::{Diagnostics, ErrorList, SceneError};
+use error::{Diagnostics, SceneError, Unsupported};
 use source::SourceMap;
 
 /// Reads a scene, in the language that the file's ending names. `overrides` are parameters of the scene (`-D name=value`).
 ///
 /// # Errors
-/// Everything that is wrong with the scene.
-pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(SceneDesc, SourceMap), Diagnostics> {
+/// Everything that is wrong with the scene; and what is not supported yet, unless that is only to be warned of
+/// ([`SceneDesc::warnings`]).
+pub fn load(
+    path: &Path,
+    overrides: &[(String, String)],
+    unsupported: Unsupported,
+) -> Result<(SceneDesc, SourceMap), Diagnostics> {
     match path.extension().and_then(|e| e.to_str()) {
-        Some("pbrt") => pbrt::load(path, overrides),
-        Some("xml") => mitsuba::load(path, overrides),
+        Some("pbrt") => pbrt::load(path, overrides, unsupported),
+        Some("xml") => mitsuba::load(path, overrides, unsupported),
         _ => {
-            let mut errors = ErrorList::default();
-            errors.push(
-                SceneError::new(format!("{} is in no scene language that is known here", path.display()))
-                    .help("scenes end in .pbrt (pbrt-v4) or .xml (Mitsuba 3)"),
-            );
-            Err(errors.into_diagnostics(SourceMap::default()))
+            let error = SceneError::new(format!("{} is in no scene language that is known here", path.display()))
+                .help("scenes end in .pbrt (pbrt-v4) or .xml (Mitsuba 3)");
+            Err(Diagnostics::new(vec![error], SourceMap::default()))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use desc::MaterialKind;
+    use error::Severity;
+
+    /// A scene in a file of its own, read with warnings only.
+    fn read(name: &str, text: &str, unsupported: Unsupported) -> Result<SceneDesc, Diagnostics> {
+        let directory = std::env::temp_dir().join(format!("tyndall-lenient-{}", std::process::id()));
+        std::fs::create_dir_all(&directory).unwrap();
+        let path = directory.join(name);
+        std::fs::write(&path, text).unwrap();
+        load(&path, &[], unsupported).map(|(desc, _)| desc)
+    }
+
+    /// What is not supported yet is refused, or left out: of three shapes one is left, under the default material.
+    fn check(name: &str, text: &str, left_out: usize) {
+        let refused = read(name, text, Unsupported::Refuse).unwrap_err();
+        assert_eq!(refused.errors.len(), left_out, "{refused}");
+        assert!(refused.errors.iter().all(|e| e.severity == Severity::NotYet));
+        assert!(refused.to_string().starts_with("error: "), "{refused}");
+
+        let desc = read(name, text, Unsupported::Warn).unwrap();
+        assert_eq!(desc.warnings.len(), left_out);
+        assert!(desc.warnings.iter().all(|e| e.severity == Severity::Warning));
+        assert_eq!(desc.shapes.len(), 1);
+        let material = desc.material(desc.shapes[0].material.value).unwrap();
+        assert!(matches!(material.kind, MaterialKind::Diffuse { .. }));
+    }
+
+    #[test]
+    fn a_pbrt_scene_without_what_is_not_known_yet_is_left() {
+        let text = r#"
+            WorldBegin
+            MakeNamedMedium "cloud" "string type" "nanovdb" "string filename" "cloud.nvdb"
+            Texture "t" "spectrum" "ptex" "string filename" "t.ptx"
+            Material "hair" "float eumelanin" 1
+            MediumInterface "cloud" ""
+            Shape "sphere"
+            Shape "curve" "point3 P" [0 0 0 0 0 1 0 0 2 0 0 3]
+            Material "diffuse" "texture reflectance" "t"
+        "#;
+        check("scene.pbrt", text, 4);
+        let desc = read("scene.pbrt", text, Unsupported::Warn).unwrap();
+        assert_eq!(desc.media[0].scale.value, 0.0, "a medium that is not known yet is clear");
+    }
+
+    #[test]
+    fn a_mitsuba_scene_without_what_is_not_known_yet_is_left() {
+        let text = r#"<scene version="3.0.0"><sensor type="perspective"/>
+            <integrator type="stokes"/>
+            <shape type="sphere"><bsdf type="hair"/></shape>
+            <shape type="sdfgrid"/>
+            <emitter type="sunsky"/>
+        </scene>"#;
+        check("scene.xml", text, 4);
+    }
+
+    /// Without a camera that is known there is no image: warnings alone do not make a scene.
+    #[test]
+    fn a_scene_whose_camera_is_not_known_yet_is_refused_anyway() {
+        let text = r#"<scene version="3.0.0"><sensor type="distant"/></scene>"#;
+        let refused = read("blind.xml", text, Unsupported::Warn).unwrap_err().to_string();
+        assert!(refused.contains("error: without what is not known yet, no image is left to be made"), "{refused}");
+        assert!(refused.contains("warning: the sensor \"distant\" is not known yet"), "{refused}");
+    }
+
+    /// A slip of the pen is no word that will be known one day.
+    #[test]
+    fn a_misspelt_word_is_an_error_even_if_the_reader_is_lenient() {
+        let misspelt = read("slip.pbrt", "WorldBegin\nShape \"spere\"", Unsupported::Warn).unwrap_err();
+        assert!(misspelt.to_string().contains("did you mean \"sphere\"?"), "{misspelt}");
     }
 }

@@ -13,7 +13,7 @@ use crate::{
 
 /// Loads a scene and tells what is in it.
 pub(crate) fn run(options: &InfoOptions) -> anyhow::Result<ExitCode> {
-    let loaded = load(&options.scene, &options.define, None, ColorMode::Rgb)?;
+    let loaded = load(&options.input, None, ColorMode::Rgb)?;
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = describe(&mut out, &loaded);

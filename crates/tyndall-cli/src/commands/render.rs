@@ -32,9 +32,10 @@ const MOST_PIXELS: u64 = 1 << 28;
 /// Loads, renders, saves, tells.
 pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     interrupt::listen()?;
-    let outputs = Outputs::new(&options.output, &options.scene, options.tone.into())?;
+    let outputs = Outputs::new(&options.output, &options.input.scene, options.tone.into())?;
     outputs.check()?;
-    let loaded = load(&options.scene, &options.define, options.resolution, color_mode(options.color))?;
+    let loaded = load(&options.input, options.resolution, color_mode(options.color))?;
+    loaded.warn();
     let settings = settings(options, &loaded)?;
     let job = Job {
         options,
@@ -101,7 +102,7 @@ impl Job<'_> {
 
     /// A connection to the viewer; without one the render goes on.
     fn tev(&self, address: &str, progress: &Progress) -> Option<Tev> {
-        Tev::connect(address, &self.options.scene.display().to_string())
+        Tev::connect(address, &self.options.input.scene.display().to_string())
             .map_err(|error| progress.say(&format!("warning: {error:#}")))
             .ok()
     }
@@ -111,7 +112,7 @@ impl Job<'_> {
         let Self { options, loaded, settings, .. } = self;
         Metadata {
             version: env!("CARGO_PKG_VERSION").into(),
-            scene: options.scene.display().to_string(),
+            scene: options.input.scene.display().to_string(),
             scene_hash: loaded.hash.clone(),
             integrator: word(&options.integrator),
             color: word(&options.color),

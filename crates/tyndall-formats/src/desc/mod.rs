@@ -40,6 +40,7 @@ pub use texture::{
     Board, Encoding, ImageDesc, MappingDesc, NoiseDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind,
 };
 
+use crate::error::SceneError;
 pub use crate::source::{Span, Spanned};
 
 /// A material of [`SceneDesc::materials`].
@@ -83,6 +84,8 @@ pub struct SceneDesc {
     pub lights: Vec<LightDesc>,
     /// Words that were read and have no effect here, each with the reason.
     pub ignored: Vec<Ignored>,
+    /// What was left out because it is not supported yet, if the user wanted no more than warnings of it.
+    pub warnings: Vec<SceneError>,
 }
 
 impl SceneDesc {
@@ -99,6 +102,26 @@ impl SceneDesc {
     /// A medium. `None` for an id of another scene.
     pub fn medium(&self, id: MediumId) -> Option<&MediumDesc> {
         self.media.get(id.0 as usize)
+    }
+
+    /// Every mesh and image that the scene names, in the order of their mention.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let shapes = self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes));
+        let meshes = shapes.filter_map(|shape| match &shape.kind {
+            ShapeKind::Ply { path, .. } | ShapeKind::Obj { path, .. } | ShapeKind::Serialized { path, .. } => {
+                Some(path)
+            }
+            _ => None,
+        });
+        let pictures = self.textures.iter().filter_map(|texture| match &texture.kind {
+            TextureKind::Image(image) => Some(&image.path),
+            _ => None,
+        });
+        let skies = self.lights.iter().filter_map(|light| match &light.kind {
+            LightKind::Environment { path, .. } => Some(path),
+            _ => None,
+        });
+        meshes.chain(pictures).chain(skies).map(|file| &file.value)
     }
 
     /// A group. `None` for an id of another scene.

@@ -63,7 +63,7 @@ impl<'t> Builder<'t> {
                 }
             },
             [] => SceneError::at(element.span, "\"twosided\" has no <bsdf> inside"),
-            _ => SceneError::at(inside[1].at.span, "two materials in one \"twosided\" are not known yet"),
+            _ => SceneError::not_yet(inside[1].at.span, "two materials in one \"twosided\" are not known yet"),
         };
         self.report.errors.push(error);
         None

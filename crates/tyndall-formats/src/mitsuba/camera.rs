@@ -28,9 +28,10 @@ pub(super) fn sensor<'t>(
         None => default_film(element.span),
     };
     let sampler = match object.only("sampler", &mut builder.report) {
-        Some(sampler) => sampler_desc(builder, sampler.element)?,
-        None => default_sampler(element.span),
+        Some(sampler) => sampler_desc(builder, sampler.element),
+        None => None,
     };
+    let sampler = sampler.unwrap_or_else(|| default_sampler(element.span));
     let medium = object.only("medium", &mut builder.report);
     let medium = medium.and_then(|m| Some(Spanned::new(builder.medium_id(m.element)?, m.at.span)));
 
@@ -100,9 +101,10 @@ fn film_desc<'t>(builder: &mut Builder<'t>, element: &'t Element) -> Option<Film
     words::plugin(element, &mut builder.report)?;
     let mut object = builder.object(element);
     let filter = match object.only("rfilter", &mut builder.report) {
-        Some(filter) => filter_desc(builder, filter.element)?,
-        None => gaussian(0.5),
+        Some(filter) => filter_desc(builder, filter.element),
+        None => None,
     };
+    let filter = filter.unwrap_or_else(|| gaussian(0.5));
     let report = &mut builder.report;
     let default = default_film(element.span);
     let width = object.count("width", 1, default.width, report);

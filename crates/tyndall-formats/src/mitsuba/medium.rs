@@ -11,10 +11,8 @@ impl<'t> Builder<'t> {
     pub(super) fn medium(&mut self, element: &'t Element) -> Option<MediumDesc> {
         words::plugin(element, &mut self.report)?;
         let mut object = self.object(element);
-        let phase = match object.only("phase", &mut self.report) {
-            Some(phase) => self.phase(phase.element)?,
-            None => PhaseDesc::Isotropic,
-        };
+        let phase = object.only("phase", &mut self.report).and_then(|phase| self.phase(phase.element));
+        let phase = phase.unwrap_or(PhaseDesc::Isotropic);
         let report = &mut self.report;
         let coefficients = Coefficients::ExtinctionAlbedo {
             sigma_t: object.volume("sigma_t", Measure::Amount, 1.0, report),

@@ -35,18 +35,22 @@ mod words;
 use std::path::Path;
 
 use crate::desc::SceneDesc;
-use crate::error::{Diagnostics, ErrorList, SceneError};
+use crate::error::{Diagnostics, ErrorList, SceneError, Unsupported};
 use crate::source::{FileId, SourceMap};
 
 /// Reads a Mitsuba scene. `overrides` are its parameters, as `-D name=value` gives them.
 ///
 /// # Errors
 /// Everything that is wrong with the scene.
-pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(SceneDesc, SourceMap), Diagnostics> {
+pub fn load(
+    path: &Path,
+    overrides: &[(String, String)],
+    unsupported: Unsupported,
+) -> Result<(SceneDesc, SourceMap), Diagnostics> {
     let mut sources = SourceMap::default();
     match sources.read(path, None) {
-        Ok(file) => read(sources, file, overrides),
-        Err(error) => Err(alone(error, sources)),
+        Ok(file) => read(sources, file, overrides, unsupported),
+        Err(error) => Err(Diagnostics::new(vec![error], sources)),
     }
 }
 
@@ -57,8 +61,11 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(SceneDesc, S
 pub fn parse(path: &Path, text: &str, overrides: &[(String, String)]) -> Result<(SceneDesc, SourceMap), Diagnostics> {
     let mut sources = SourceMap::default();
     match sources.add(path, text) {
-        Some(file) => read(sources, file, overrides),
-        None => Err(alone(SceneError::new(format!("{} is too large", path.display())), sources)),
+        Some(file) => read(sources, file, overrides, Unsupported::Refuse),
+        None => {
+            let error = SceneError::new(format!("{} is too large", path.display()));
+            Err(Diagnostics::new(vec![error], sources))
+        }
     }
 }
 
@@ -66,22 +73,21 @@ fn read(
     mut sources: SourceMap,
     file: FileId,
     overrides: &[(String, String)],
+    unsupported: Unsupported,
 ) -> Result<(SceneDesc, SourceMap), Diagnostics> {
-    let mut errors = ErrorList::default();
+    let mut errors = ErrorList::new(unsupported);
     let Some(tree) = tree::read(file, overrides, &mut sources, &mut errors) else {
         return Err(errors.into_diagnostics(sources));
     };
-    let (scene, errors) = scene::build(&tree, &sources, errors);
-    match scene {
-        Some(scene) => errors.finish(scene, sources),
-        None => Err(errors.into_diagnostics(sources)),
+    let (scene, mut errors) = scene::build(&tree, &sources, errors);
+    if let Some(mut scene) = scene {
+        scene.warnings = errors.warnings();
+        return errors.finish(scene, sources);
     }
-}
-
-fn alone(error: SceneError, sources: SourceMap) -> Diagnostics {
-    let mut errors = ErrorList::default();
-    errors.push(error);
-    errors.into_diagnostics(sources)
+    if errors.is_empty() {
+        errors.push(SceneError::new("without what is not known yet, no image is left to be made"));
+    }
+    Err(errors.into_diagnostics(sources))
 }
 
 #[cfg(test)]

@@ -122,7 +122,7 @@ impl<'t> Object<'t> {
         }
         let here = found.span_of("name");
         report.errors.push(if matches!(found.tag, "texture" | "volume" | "ref") {
-            SceneError::at(here, format!("a <{}> for \"{name}\" is not known yet", found.tag))
+            SceneError::not_yet(here, format!("a <{}> for \"{name}\" is not known yet", found.tag))
                 .help(format!("write a <{}>", tags[0]))
         } else {
             SceneError::at(here, format!("\"{name}\" is a <{}>, not a <{}>", tags[0], found.tag))
@@ -282,7 +282,7 @@ impl<'t> Object<'t> {
             if let Some(name) = child.name().filter(|name| names.contains(name)) {
                 child.used = true;
                 let message = format!("\"{name}\" of the {title} is not known yet");
-                report.errors.push(SceneError::at(child.at.span_of("name"), message).help("leave it out"));
+                report.errors.push(SceneError::not_yet(child.at.span_of("name"), message).help("leave it out"));
             }
         }
     }

@@ -115,8 +115,9 @@ impl<'t> Builder<'t> {
         }
         let integrator = match scene.only("integrator", &mut self.report) {
             Some(integrator) => integrator::integrator(self, integrator.element),
-            None => Some(default_integrator(root.span)),
+            None => None,
         };
+        let integrator = integrator.unwrap_or_else(|| default_integrator(root.span));
         let sensor = self.sensor(&mut scene);
         let seen = sensor.and_then(|sensor| camera::sensor(self, sensor.element));
         scene.finish(&mut self.report);
@@ -127,7 +128,7 @@ impl<'t> Builder<'t> {
             camera,
             film,
             sampler,
-            integrator: integrator?,
+            integrator,
             textures: std::mem::take(&mut self.textures),
             materials: std::mem::take(&mut self.materials),
             media: std::mem::take(&mut self.media),
@@ -136,6 +137,7 @@ impl<'t> Builder<'t> {
             instances: std::mem::take(&mut self.instances),
             lights: std::mem::take(&mut self.lights),
             ignored: std::mem::take(&mut self.report.ignored),
+            warnings: Vec::new(),
         })
     }
 

@@ -38,10 +38,10 @@ impl<'t> Builder<'t> {
         let mut object = self.object(element);
         let emitter = object.only("emitter", &mut self.report);
         let emission = emitter.and_then(|emitter| self.area_light(emitter.element));
-        let material = match object.only("bsdf", &mut self.report) {
-            Some(bsdf) => Spanned::new(self.material(bsdf.element).unwrap_or(MaterialId(0)), bsdf.at.span),
-            None => Spanned::new(self.default_material(element, emitter.is_some()), element.span),
-        };
+        let bsdf = object.only("bsdf", &mut self.report);
+        let material = bsdf.and_then(|bsdf| Some(Spanned::new(self.material(bsdf.element)?, bsdf.at.span)));
+        let material =
+            material.unwrap_or_else(|| Spanned::new(self.default_material(element, emitter.is_some()), element.span));
         let interface = self.interface(&mut object);
         let mut to_world = object.transform(&mut self.report);
         let kind = self.shape_kind(plugin, &mut object, &mut to_world)?;

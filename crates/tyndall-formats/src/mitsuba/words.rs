@@ -88,7 +88,7 @@ pub(super) fn plugin(element: &Element, report: &mut Report) -> Option<&'static 
         return Some(plugin);
     }
     report.errors.push(if later.contains(&word.value.as_str()) {
-        let error = SceneError::at(word.span, format!("the {tag} \"{}\" is not known yet", word.value));
+        let error = SceneError::not_yet(word.span, format!("the {tag} \"{}\" is not known yet", word.value));
         let known: Vec<_> = known.iter().map(|known| format!("\"{known}\"")).collect();
         if known.is_empty() { error } else { error.help(format!("known are {}", known.join(", "))) }
     } else {

@@ -126,7 +126,7 @@ impl Reader {
             "Scale" => self.checked(|r| r.state.concat(DMat4::from_scale(vec(0)), s.whole)),
             "Transform" => self.checked(|r| r.state.set(matrix(), s.whole)),
             "Translate" => self.checked(|r| r.state.concat(DMat4::from_translation(vec(0)), s.whole)),
-            other => self.errors.push(SceneError::at(s.span, format!("\"{other}\" is not supported yet"))),
+            other => self.errors.push(SceneError::not_yet(s.span, format!("\"{other}\" is not supported yet"))),
         }
     }
 
@@ -268,7 +268,7 @@ impl Reader {
         let word = &*name.value;
         let list = known.iter().map(|k| quote(k)).collect::<Vec<_>>().join(", ");
         let error = if later.contains(&word) {
-            SceneError::at(name.span, format!("the {what} {} is not supported yet", quote(word)))
+            SceneError::not_yet(name.span, format!("the {what} {} is not supported yet", quote(word)))
                 .help(format!("supported are {list}"))
         } else {
             let error = SceneError::at(name.span, format!("there is no {what} {}", quote(word)));

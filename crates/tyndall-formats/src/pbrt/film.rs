@@ -44,7 +44,7 @@ impl Reader {
             && sensor.value != "cie1931"
         {
             p.error(
-                SceneError::at(sensor.span, "measured sensors are not supported yet")
+                SceneError::not_yet(sensor.span, "measured sensors are not supported yet")
                     .help("use \"cie1931\", the default"),
             );
         }

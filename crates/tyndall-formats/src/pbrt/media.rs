@@ -15,11 +15,13 @@ impl Reader {
         let name = s.names[0].clone();
         let defaults = self.state.now.defaults.medium.clone();
         let mut p = self.params("medium", &mut s, &defaults);
+        let mut is_known = true;
         match p.string_opt("type") {
             Some(kind) if kind.value != "homogeneous" => {
                 self.unknown_kind("medium", &kind.map(Cow::Owned), &["homogeneous"], &LATER_MEDIA);
-                // Its parameters belong to another kind: only the name is of use.
+                // Its parameters belong to another kind: a clear medium has its name.
                 p = Params::new(String::new(), name.span, Vec::new(), &[], &self.dir);
+                is_known = false;
             }
             Some(_) => {}
             None => p.error(
@@ -30,7 +32,7 @@ impl Reader {
             span: s.whole,
             name: Some(name.value.to_string()),
             coefficients: coefficients(&mut p),
-            scale: p.not_negative("scale", 1.0),
+            scale: p.not_negative("scale", if is_known { 1.0 } else { 0.0 }),
             phase: phase(&mut p),
             emission: p.emission_opt("Le", "Lescale"),
         };

@@ -38,7 +38,7 @@ use std::sync::Arc;
 use crate::desc::{
     GroupDesc, Ignored, InstanceDesc, LightDesc, MaterialDesc, MaterialId, MediumDesc, SceneDesc, ShapeDesc,
 };
-use crate::error::{Diagnostics, ErrorList, SceneError};
+use crate::error::{Diagnostics, ErrorList, SceneError, Unsupported};
 use crate::source::{FileId, SourceMap, Span};
 use names::Registry;
 use parser::Parser;
@@ -53,9 +53,13 @@ const MAX_INCLUDE_DEPTH: usize = 32;
 ///
 /// # Errors
 /// Everything that is wrong with the scene.
-pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(SceneDesc, SourceMap), Diagnostics> {
+pub fn load(
+    path: &Path,
+    overrides: &[(String, String)],
+    unsupported: Unsupported,
+) -> Result<(SceneDesc, SourceMap), Diagnostics> {
     let mut sources = SourceMap::default();
-    let mut errors = ErrorList::default();
+    let mut errors = ErrorList::new(unsupported);
     for (name, _) in overrides {
         errors.push(
             SceneError::new(format!("{} has no parameter \"{name}\" to set", path.display()))
@@ -206,6 +210,7 @@ impl Reader {
             instances: self.instances,
             lights: self.lights,
             ignored: self.ignored,
+            warnings: errors.warnings(),
         };
         errors.finish(desc, self.sources)
     }

@@ -141,7 +141,7 @@ impl Params {
             let param = self.list.remove(at);
             if !param.inherited {
                 let message = format!("{} of {} is not supported yet", quote(name), self.owner);
-                self.errors.push(SceneError::at(param.declared, message).help("leave it out"));
+                self.errors.push(SceneError::not_yet(param.declared, message).help("leave it out"));
             }
         }
     }

@@ -109,7 +109,7 @@ impl Reader {
                     return self.ignore(s.whole, "it is off anyway");
                 }
                 let message = format!("the option {} is not supported yet", quote(&word));
-                self.errors.push(SceneError::at(s.whole, message).help("leave it out"));
+                self.errors.push(SceneError::not_yet(s.whole, message).help("leave it out"));
             }
             _ => {
                 if let Some((_, reason)) = IGNORED_OPTIONS.into_iter().find(|(known, _)| *known == word) {

@@ -87,7 +87,8 @@ fn sphere(p: &mut Params) -> ShapeKind {
     let (low, high) = (p.float("zmin", -radius), p.float("zmax", radius));
     for cut in [low, high].into_iter().filter(|z| z.value.abs() < radius) {
         p.error(
-            SceneError::at(cut.span, "parts of spheres are not supported yet").help("leave out \"zmin\" and \"zmax\""),
+            SceneError::not_yet(cut.span, "parts of spheres are not supported yet")
+                .help("leave out \"zmin\" and \"zmax\""),
         );
     }
     p.later_unless("phimax", 360.0);

@@ -29,6 +29,8 @@ const CLASSES: [&str; 12] = [
     "windy",
     "wrinkled",
 ];
+/// What stands in for a texture that is not known.
+const STAND_IN: f64 = 0.5;
 const LATER_CLASSES: [&str; 1] = ["ptex"];
 
 /// What a texture holds.
@@ -90,10 +92,13 @@ impl Reader {
             &self.dir,
         );
         let space = Space { from_world: self.state.now.ctm.inverse(), texels };
-        let Some(kind) = space.kind(&class.value, &mut p, &self.textures) else {
-            return self.unknown_kind("texture", &class, &CLASSES, &LATER_CLASSES);
+        let kind = if let Some(kind) = space.kind(&class.value, &mut p, &self.textures) {
+            self.finish_params(p);
+            kind
+        } else {
+            self.unknown_kind("texture", &class, &CLASSES, &LATER_CLASSES);
+            TextureKind::Plain(Spanned::new(Varying::constant(STAND_IN), class.span))
         };
-        self.finish_params(p);
         let id = TextureId(self.textures.list.len() as u32);
         let key = (texels, name.value.to_string());
         if let Some(first) = self.textures.by_name.get(&key) {

@@ -93,7 +93,8 @@ pub(crate) fn run(options: &LectureOptions) -> anyhow::Result<ExitCode> {
 fn chapter(topic: &Topic, options: &LectureOptions) -> anyhow::Result<Option<Chapter>> {
     let path = options.out.join(format!("{}.pbrt", topic.name));
     save::replace(&path, topic.scene.as_bytes())?;
-    let loaded = load(&path, &[], options.resolution, ColorMode::Mono)?;
+    let input = SceneOptions { scene: path, ..SceneOptions::default() };
+    let loaded = load(&input, options.resolution, ColorMode::Mono)?;
     let bench = Bench::new(&loaded, topic.name, options)?;
 
     let reference = bench.reference();

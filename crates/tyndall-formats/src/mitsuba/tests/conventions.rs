@@ -234,8 +234,9 @@ fn included_files_and_directories_are_found_beside_the_scene() {
         "loop.xml",
         "<scene version=\"3.0.0\"><include filename=\"loop.xml\"/><sensor type=\"perspective\"/></scene>",
     );
-    let (s, sources) = load(&room.join("scene.xml"), &[]).map_err(|errors| errors.to_string()).unwrap();
-    let endless = load(&room.join("loop.xml"), &[]).unwrap_err().to_string();
+    let (s, sources) =
+        load(&room.join("scene.xml"), &[], Unsupported::Refuse).map_err(|errors| errors.to_string()).unwrap();
+    let endless = load(&room.join("loop.xml"), &[], Unsupported::Refuse).unwrap_err().to_string();
     std::fs::remove_dir_all(&room).unwrap();
     assert_eq!(sources.files().len(), 3);
     assert_eq!(s.shapes[0].kind, ShapeKind::Sphere { radius: 7.0 });

@@ -173,7 +173,7 @@ fn a_file_that_is_no_scene_is_told_so() {
     for (text, fault) in cases {
         assert_eq!(faults(text, &[]).first().map(String::as_str), Some(fault), "{text}");
     }
-    let error = load(Path::new("no/such.xml"), &[]).unwrap_err().to_string();
+    let error = load(Path::new("no/such.xml"), &[], Unsupported::Refuse).unwrap_err().to_string();
     assert!(error.contains("no/such.xml"), "{error}");
 }
 

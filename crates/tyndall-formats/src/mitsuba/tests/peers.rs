@@ -7,7 +7,7 @@ use crate::desc::{Coefficients, FilterDesc, FovAxis, LightKind, MaterialKind, Mi
 use crate::desc::{SpectrumDesc, SpotFalloff};
 
 fn loaded(name: &str) -> SceneDesc {
-    load(&peer(name), &[]).map_err(|errors| errors.to_string()).unwrap().0
+    load(&peer(name), &[], Unsupported::Refuse).map_err(|errors| errors.to_string()).unwrap().0
 }
 
 #[test]
@@ -122,7 +122,8 @@ fn instances_share_their_group_and_keep_their_places() {
 fn parameters_are_overridden_from_the_command_line() {
     let overrides = [("spp", "64"), ("res", "32"), ("max_depth", "3"), ("integrator", "volpathmis")];
     let overrides = overrides.map(|(name, value)| (name.to_owned(), value.to_owned()));
-    let s = load(&peer("g_cornell.xml"), &overrides).map_err(|errors| errors.to_string()).unwrap().0;
+    let s =
+        load(&peer("g_cornell.xml"), &overrides, Unsupported::Refuse).map_err(|errors| errors.to_string()).unwrap().0;
     assert_eq!((s.sampler.spp.value, s.film.width), (64, 32));
     assert_eq!(s.integrator.name.value, "volpathmis");
     // Mitsuba counts three segments, which are two scatterings.

@@ -6,10 +6,11 @@ use super::peers;
 use crate::desc::{
     Coefficients, FilterDesc, GroupId, LightKind, MaterialKind, PhaseDesc, SceneDesc, ShapeKind, SpectrumDesc,
 };
+use crate::error::Unsupported;
 use crate::load;
 
 fn peer(name: &str) -> SceneDesc {
-    match load(&peers().join(name), &[]) {
+    match load(&peers().join(name), &[], Unsupported::Refuse) {
         Ok((desc, _)) => desc,
         Err(diagnostics) => panic!("{diagnostics}"),
     }

@@ -9,6 +9,7 @@ use crate::desc::{
     Coefficients, ConductorOptics, CropDesc, EnvironmentMapping, FilterDesc, FovAxis, LengthUnit, LightKind, Magnitude,
     MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc, Varying,
 };
+use crate::error::Unsupported;
 use crate::load;
 
 #[test]
@@ -227,10 +228,10 @@ fn an_include_stands_for_its_file_relative_to_the_scene() {
     let write = |name: &str, text: &str| std::fs::write(dir.join(name), text).unwrap();
     write("scene.pbrt", "WorldBegin\nInclude \"parts/ball.pbrt\"\nInclude \"parts/ball.pbrt\"\n");
     write("parts/ball.pbrt", "Translate 1 0 0\nShape \"plymesh\" \"string filename\" \"parts/ball.ply\"\n");
-    let loaded = load(&dir.join("scene.pbrt"), &[]);
+    let loaded = load(&dir.join("scene.pbrt"), &[], Unsupported::Refuse);
     write("loop.pbrt", "WorldBegin\nInclude \"parts/loop.pbrt\"\n");
     write("parts/loop.pbrt", "Include \"parts/../loop.pbrt\"\n");
-    let looped = load(&dir.join("loop.pbrt"), &[]);
+    let looped = load(&dir.join("loop.pbrt"), &[], Unsupported::Refuse);
     std::fs::remove_dir_all(&dir).unwrap();
 
     let (desc, sources) = loaded.unwrap();
@@ -282,7 +283,7 @@ fn an_import_keeps_what_it_makes_and_forgets_what_it_sets() {
     .unwrap();
     let main = |text: &str| {
         std::fs::write(dir.join("main.pbrt"), format!("WorldBegin {text}")).unwrap();
-        load(&dir.join("main.pbrt"), &[]).map(|(desc, _)| desc).map_err(|e| e.to_string())
+        load(&dir.join("main.pbrt"), &[], Unsupported::Refuse).map(|(desc, _)| desc).map_err(|e| e.to_string())
     };
     let imported = main(r#"Import "part.pbrt" NamedMaterial "red" Shape "sphere""#).unwrap();
     let forgotten = main(r#"Import "part.pbrt" CoordSysTransform "there""#).unwrap_err();
