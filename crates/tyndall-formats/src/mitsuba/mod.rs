@@ -60,13 +60,11 @@ pub fn load(
 /// Everything that is wrong with the scene.
 pub fn parse(path: &Path, text: &str, overrides: &[(String, String)]) -> Result<(SceneDesc, SourceMap), Diagnostics> {
     let mut sources = SourceMap::default();
-    match sources.add(path, text) {
-        Some(file) => read(sources, file, overrides, Unsupported::Refuse),
-        None => {
-            let error = SceneError::new(format!("{} is too large", path.display()));
-            Err(Diagnostics::new(vec![error], sources))
-        }
+    if let Some(file) = sources.add(path, text) {
+        return read(sources, file, overrides, Unsupported::Refuse);
     }
+    let error = SceneError::new(format!("{} is too large", path.display()));
+    Err(Diagnostics::new(vec![error], sources))
 }
 
 fn read(

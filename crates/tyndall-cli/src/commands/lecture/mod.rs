@@ -17,7 +17,7 @@ use tyndall::spectrum::ColorMode;
 use tyndall_formats::film::{Curve, Image, Tone, exr, png, save};
 
 use crate::{
-    args::{IntegratorName, LectureOptions},
+    args::{IntegratorName, LectureOptions, SceneOptions},
     interrupt,
     load::load,
 };
