@@ -13,6 +13,7 @@ pub mod error;
 pub mod film;
 mod gzip;
 pub mod image;
+pub mod inspect;
 pub mod mesh;
 pub mod mitsuba;
 pub mod pbrt;

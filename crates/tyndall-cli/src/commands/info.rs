@@ -1,9 +1,13 @@
 //! `tyndall info SCENE`.
 
-use std::{fmt::Write, process::ExitCode};
+use std::{fmt::Write, io::IsTerminal, process::ExitCode};
 
 use tyndall::{light::Light, math::Vec3, spectrum::ColorMode};
-use tyndall_formats::desc::{LengthUnit, SceneDesc};
+use tyndall_formats::{
+    desc::{LengthUnit, SceneDesc},
+    error::Diagnostics,
+    inspect,
+};
 
 use crate::{
     args::InfoOptions,
@@ -18,6 +22,10 @@ pub(crate) fn run(options: &InfoOptions) -> anyhow::Result<ExitCode> {
     // Writing to a string cannot fail.
     let _ = describe(&mut out, &loaded);
     write_text("-".as_ref(), out.trim_end())?;
+    let warnings = Diagnostics::new(inspect::warnings(&loaded.desc, &loaded.scene), loaded.sources);
+    if !warnings.errors.is_empty() {
+        eprintln!("\n{}", warnings.render(std::io::stderr().is_terminal()));
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -26,7 +34,7 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     let unit = unit(desc);
     writeln!(out, "hash       {hash}")?;
     writeln!(out, "image      {}x{}, {} spp", scene.camera.width, scene.camera.height, desc.sampler.spp.value)?;
-    writeln!(out, "objects    {} and {} instances", scene.objects.len(), desc.instances.len())?;
+    geometry(out, loaded)?;
     let bounds = scene.geometry.bounds();
     let extent = (bounds.max - bounds.min).max_element();
     writeln!(out, "bounds     {} to {} [{unit}]", point(bounds.min, extent), point(bounds.max, extent))?;
@@ -41,6 +49,21 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
         reasons.iter().try_for_each(|reason| writeln!(out, "           {reason}"))?;
     }
     writeln!(out, "start      {:.1} ms to read, {:.1} ms to build", 1e3 * load_seconds, 1e3 * build_seconds)
+}
+
+fn geometry(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
+    let census = loaded.scene.geometry.census();
+    let counts = [
+        (census.triangles, "triangles"),
+        (census.spheres, "spheres"),
+        (census.disks, "disks"),
+        (census.patches, "patches"),
+        (census.instances, "instances"),
+    ];
+    let present: Vec<String> = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    let parts = if present.is_empty() { String::new() } else { format!(": {}", present.join(", ")) };
+    writeln!(out, "objects    {}{parts}", loaded.scene.objects.len())?;
+    writeln!(out, "memory     {:.1} MB of shapes and their trees", census.bytes as f64 / 1e6)
 }
 
 fn lights(out: &mut String, loaded: &Loaded) -> std::fmt::Result {

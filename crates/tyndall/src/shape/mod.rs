@@ -12,6 +12,7 @@
 
 mod builder;
 mod bvh;
+mod census;
 mod clearance;
 mod disk;
 mod geometry;
@@ -22,6 +23,7 @@ mod patch;
 mod sphere;
 
 pub use builder::{GeometryBuilder, GroupId, ShapeError};
+pub use census::Census;
 pub use disk::Disk;
 pub use geometry::{Geometry, Hit, ObjectId, Shape};
 pub use interaction::{Interaction, offset_point};
