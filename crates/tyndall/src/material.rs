@@ -1,7 +1,10 @@
 //! What a surface is made of, as the scene has it: spectra that become a [`Bsdf`] at the wavelengths of a path.
 
 use crate::{
-    bsdf::{Bsdf, Sides, microfacet::Distribution},
+    bsdf::{
+        Bsdf, Sides,
+        microfacet::{Distribution, Shadowing},
+    },
     spectrum::{Lanes, Sampled, Wavelengths, glass::Glass},
     texture::{Texture, TexturePoint},
 };
@@ -20,10 +23,8 @@ pub enum Material {
     Conductor {
         /// How it reflects.
         metal: Metal,
-        /// Roughness of its microfacets.
+        /// Its microfacets, where it is rough.
         alpha: Roughness,
-        /// The law of the slopes, where it is rough.
-        distribution: Distribution,
         /// A factor on what is reflected [1].
         tint: Texture,
         /// The sides that reflect.
@@ -33,10 +34,8 @@ pub enum Material {
     Dielectric {
         /// Index of the inside over that of the outside [1].
         eta: Index,
-        /// Roughness of its microfacets.
+        /// Its microfacets, where it is rough.
         alpha: Roughness,
-        /// The law of the slopes, where it is rough.
-        distribution: Distribution,
         /// A factor on what is reflected [1].
         reflection_tint: Texture,
         /// A factor on what is transmitted [1].
@@ -64,21 +63,31 @@ pub enum Material {
     Null,
 }
 
-/// The roughness α of microfacets along the tangent and across [1].
+/// The microfacets of a rough surface.
 #[derive(Debug, Clone)]
 pub struct Roughness {
-    /// Along the tangent.
+    /// Roughness α along the tangent [1].
     pub u: Texture,
     /// Across.
     pub v: Texture,
     /// Whether α is the square root of the textures' values (pbrt's `remaproughness`), or the value.
     pub remap: bool,
+    /// The law of the slopes.
+    pub distribution: Distribution,
+    /// How masking and shadowing depend on each other.
+    pub shadowing: Shadowing,
 }
 
 impl Roughness {
     /// The same α everywhere.
     pub fn constant([u, v]: [f32; 2]) -> Self {
-        Self { u: u.into(), v: v.into(), remap: false }
+        Self {
+            u: u.into(),
+            v: v.into(),
+            remap: false,
+            distribution: Distribution::default(),
+            shadowing: Shadowing::default(),
+        }
     }
 
     #[inline]
@@ -87,6 +96,12 @@ impl Roughness {
             let value = texture.scalar(at).max(0.0);
             if self.remap { value.sqrt() } else { value }
         })
+    }
+
+    /// The same model with microfacets after these laws.
+    #[inline]
+    fn shape(&self, bsdf: Bsdf) -> Bsdf {
+        bsdf.distributed(self.distribution, self.shadowing)
     }
 }
 
@@ -123,7 +138,7 @@ impl Material {
     pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
         match self {
             Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(at, wavelengths)).on(*sides),
-            Self::Conductor { metal, alpha, distribution, tint, sides } => {
+            Self::Conductor { metal, alpha, tint, sides } => {
                 let [x, y] = alpha.at(at);
                 let bsdf = match metal {
                     Metal::Index { eta, k } => {
@@ -133,12 +148,12 @@ impl Material {
                     // |1 − ik| = |1 + ik|: a purely imaginary index reflects all.
                     Metal::Mirror => Bsdf::conductor(Lanes::ZERO, Lanes::ONE, x, y),
                 };
-                bsdf.distributed(*distribution).tinted(tint.eval(at, wavelengths), Lanes::ONE).on(*sides)
+                alpha.shape(bsdf).tinted(tint.eval(at, wavelengths), Lanes::ONE).on(*sides)
             }
-            Self::Dielectric { eta, alpha, distribution, reflection_tint, transmission_tint } => {
+            Self::Dielectric { eta, alpha, reflection_tint, transmission_tint } => {
                 let [x, y] = alpha.at(at);
-                Bsdf::dielectric(eta.at(wavelengths, hero), x, y)
-                    .distributed(*distribution)
+                alpha
+                    .shape(Bsdf::dielectric(eta.at(wavelengths, hero), x, y))
                     .tinted(reflection_tint.eval(at, wavelengths), transmission_tint.eval(at, wavelengths))
             }
             Self::ThinDielectric { eta, reflection_tint, transmission_tint } => {

@@ -4,7 +4,6 @@ mod common;
 
 use common::{World, assert_mean, diffuse, glass, medium};
 use tyndall::{
-    bsdf::microfacet::Distribution,
     film::{Crop, Filter},
     integrator::{Analog, Integrator, VolPath},
     light::{Light, PointLight},
@@ -145,7 +144,6 @@ fn a_ball_of_flint_glass_under_a_uniform_sky_vanishes() {
         let flint = Material::Dielectric {
             eta: Index::Glass(*Glass::named("SF11").unwrap()),
             alpha: Roughness::constant([0.0; 2]),
-            distribution: Distribution::default(),
             reflection_tint: 1.0.into(),
             transmission_tint: 1.0.into(),
         };

@@ -56,8 +56,7 @@ fn surfaces() -> World {
         0.6,
         Material::Conductor {
             metal,
-            alpha: Roughness::constant([0.6; 2]),
-            distribution: Distribution::Beckmann,
+            alpha: Roughness { distribution: Distribution::Beckmann, ..Roughness::constant([0.6; 2]) },
             tint: 1.0.into(),
             sides: Sides::Both,
         },

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use testkit::quadrature::{adaptive_rectangle, direction, gauss_legendre};
 use testkit::{Family, Grid, Outcome, Stream, chi_square, close, z_test};
-use tyndall::bsdf::microfacet::{Distribution, Microfacets, roughness_to_alpha};
+use tyndall::bsdf::microfacet::{Distribution, Microfacets, Shadowing, roughness_to_alpha};
 use tyndall::bsdf::{Bsdf, BsdfSample, RoughConductor, RoughDielectric, ScatterKind, Sides};
 use tyndall::math::{Vec2, Vec3};
 use tyndall::phase::{Isotropic, Phase, Rayleigh, deflect};
@@ -37,11 +37,25 @@ fn bsdfs() -> Vec<(&'static str, Bsdf)> {
         ("diamond, rough 1", Bsdf::dielectric(2.4, 1.0, 1.0)),
         ("glass, rough 0.2, tinted", Bsdf::dielectric(1.5, 0.2, 0.2).tinted(ochre, Lanes::rgb(0.1, 0.6, 1.0))),
         ("glass, rough 0.2, reflecting nothing", Bsdf::dielectric(1.5, 0.2, 0.2).tinted(Lanes::ZERO, Lanes::ONE)),
-        ("gold, rough 0.1, Beckmann", Bsdf::conductor(gold_eta, gold_k, 0.1, 0.1).distributed(Distribution::Beckmann)),
+        (
+            "gold, rough 0.1, Beckmann",
+            Bsdf::conductor(gold_eta, gold_k, 0.1, 0.1).distributed(Distribution::Beckmann, Shadowing::Correlated),
+        ),
         ("mirror, rough 1 and 0.3, Beckmann", beckmann_mirror()),
-        ("glass, rough 0.1, Beckmann", Bsdf::dielectric(1.5, 0.1, 0.1).distributed(Distribution::Beckmann)),
-        ("glass, rough 0.4 and 0.2, Beckmann", Bsdf::dielectric(1.5, 0.4, 0.2).distributed(Distribution::Beckmann)),
-        ("diamond, rough 1, Beckmann", Bsdf::dielectric(2.4, 1.0, 1.0).distributed(Distribution::Beckmann)),
+        (
+            "glass, rough 0.1, Beckmann",
+            Bsdf::dielectric(1.5, 0.1, 0.1).distributed(Distribution::Beckmann, Shadowing::Correlated),
+        ),
+        (
+            "glass, rough 0.4 and 0.2, Beckmann",
+            Bsdf::dielectric(1.5, 0.4, 0.2).distributed(Distribution::Beckmann, Shadowing::Correlated),
+        ),
+        (
+            "diamond, rough 1, Beckmann",
+            Bsdf::dielectric(2.4, 1.0, 1.0).distributed(Distribution::Beckmann, Shadowing::Correlated),
+        ),
+        ("gold, rough 0.6, separable", separable(Bsdf::conductor(gold_eta, gold_k, 0.6, 0.6))),
+        ("glass, rough 0.5 and 0.2, separable", separable(Bsdf::dielectric(1.5, 0.5, 0.2))),
         ("pane", Bsdf::thin_dielectric(Lanes::splat(1.5))),
         ("pane of air, tinted", Bsdf::thin_dielectric(Lanes::splat(0.75)).tinted(ochre, Lanes::rgb(0.1, 0.6, 1.0))),
         ("pane reflecting nothing", Bsdf::thin_dielectric(Lanes::splat(1.5)).tinted(Lanes::ZERO, Lanes::ONE)),
@@ -54,7 +68,14 @@ fn bsdfs() -> Vec<(&'static str, Bsdf)> {
 }
 
 fn beckmann_mirror() -> Bsdf {
-    Bsdf::conductor(Lanes::ZERO, Lanes::ONE, 1.0, 0.3).distributed(Distribution::Beckmann)
+    Bsdf::conductor(Lanes::ZERO, Lanes::ONE, 1.0, 0.3).distributed(Distribution::Beckmann, Shadowing::Correlated)
+}
+
+/// With Mitsuba's shadowing: Beckmann's law for glass, that of Trowbridge and Reitz for metal.
+fn separable(bsdf: Bsdf) -> Bsdf {
+    let beckmann = matches!(bsdf, Bsdf::RoughDielectric(_));
+    let law = if beckmann { Distribution::Beckmann } else { Distribution::TrowbridgeReitz };
+    bsdf.distributed(law, Shadowing::Separable)
 }
 
 fn metal_on_the_outside() -> Bsdf {
@@ -173,7 +194,7 @@ fn microfacets_and_the_visible_ones_among_them_integrate_to_one() {
     };
     for distribution in [Distribution::TrowbridgeReitz, Distribution::Beckmann] {
         for (alpha_x, alpha_y) in [(0.05, 0.05), (0.3, 0.1), (1.0, 1.0)] {
-            let d = Microfacets { alpha_x, alpha_y, distribution };
+            let d = Microfacets { alpha_x, alpha_y, distribution, shadowing: Shadowing::Separable };
             let projected = hemisphere(&|m| d.density(m) * m.z);
             assert!((projected - 1.0).abs() < 2e-5, "{d:?}: {projected}");
             for wo in directions().into_iter().filter(|wo| wo.z > 0.0) {

@@ -1,7 +1,10 @@
 //! Materials.
 
 use tyndall::{
-    bsdf::{Sides, microfacet::Distribution},
+    bsdf::{
+        Sides,
+        microfacet::{Distribution, Shadowing},
+    },
     material::{Index, Material, Metal, Roughness},
     spectrum::{Spectrum, glass::Glass},
     texture::Texture,
@@ -9,7 +12,10 @@ use tyndall::{
 
 use super::{Builder, spectra::Measure};
 use crate::{
-    desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc, Varying},
+    desc::{
+        ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind, SpectrumDesc,
+        Varying,
+    },
     error::SceneError,
     source::Spanned,
 };
@@ -24,7 +30,6 @@ impl Builder<'_> {
             MaterialKind::Conductor { optics, roughness, tint } => Some(Material::Conductor {
                 metal: self.metal(optics)?,
                 alpha: self.roughness(roughness)?,
-                distribution: distribution(roughness),
                 tint: self.tint(tint.as_ref())?,
                 sides,
             }),
@@ -32,7 +37,6 @@ impl Builder<'_> {
                 Some(Material::Dielectric {
                     eta: self.index(eta)?,
                     alpha: self.roughness(roughness)?,
-                    distribution: distribution(roughness),
                     reflection_tint: self.tint(reflection_tint.as_ref())?,
                     transmission_tint: self.tint(transmission_tint.as_ref())?,
                 })
@@ -86,17 +90,18 @@ impl Builder<'_> {
     fn roughness(&mut self, desc: &RoughnessDesc) -> Option<Roughness> {
         let u = self.texture(&desc.u, Measure::Coefficient);
         let v = self.texture(&desc.v, Measure::Coefficient);
-        u.zip(v).map(|(u, v)| Roughness { u, v, remap: desc.remap })
+        let distribution = match desc.distribution {
+            MicrofacetKind::Ggx => Distribution::TrowbridgeReitz,
+            MicrofacetKind::Beckmann => Distribution::Beckmann,
+        };
+        let shadowing = match desc.shadowing {
+            ShadowingKind::Correlated => Shadowing::Correlated,
+            ShadowingKind::Separable => Shadowing::Separable,
+        };
+        u.zip(v).map(|(u, v)| Roughness { u, v, remap: desc.remap, distribution, shadowing })
     }
 
     fn tint(&mut self, tint: Option<&Spanned<Varying>>) -> Option<Texture> {
         tint.map_or(Some(Texture::from(1.0)), |t| self.texture(t, Measure::Share))
-    }
-}
-
-fn distribution(roughness: &RoughnessDesc) -> Distribution {
-    match roughness.distribution {
-        MicrofacetKind::Ggx => Distribution::TrowbridgeReitz,
-        MicrofacetKind::Beckmann => Distribution::Beckmann,
     }
 }

@@ -93,6 +93,8 @@ pub struct RoughnessDesc {
     pub remap: bool,
     /// The distribution of normals.
     pub distribution: MicrofacetKind,
+    /// How masking and shadowing depend on each other.
+    pub shadowing: ShadowingKind,
 }
 
 /// A distribution of microscopic normals.
@@ -104,11 +106,21 @@ pub enum MicrofacetKind {
     Beckmann,
 }
 
+/// How microscopic masking and shadowing depend on each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShadowingKind {
+    /// By the height of a facet (pbrt).
+    Correlated,
+    /// Not at all (Mitsuba).
+    Separable,
+}
+
 impl RoughnessDesc {
     /// No roughness; `span` is where the file might have said otherwise.
     pub fn smooth(span: Span) -> Self {
         let none = Spanned::new(Varying::constant(0.0), span);
-        Self { u: none.clone(), v: none, remap: false, distribution: MicrofacetKind::Ggx }
+        let (distribution, shadowing) = (MicrofacetKind::Ggx, ShadowingKind::Correlated);
+        Self { u: none.clone(), v: none, remap: false, distribution, shadowing }
     }
 
     /// The model's α along the two tangents, where it is the same everywhere.

@@ -7,7 +7,9 @@ use super::object::{Measure, Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
 use super::words;
-use crate::desc::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc, Varying};
+use crate::desc::{
+    ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind, SpectrumDesc, Varying,
+};
 use crate::error::SceneError;
 use crate::source::Spanned;
 
@@ -98,7 +100,8 @@ impl<'t> Builder<'t> {
         Some(kind)
     }
 
-    /// Mitsuba's distribution is Beckmann's unless the file says otherwise, and its α is that of the model.
+    /// Mitsuba's distribution is Beckmann's unless the file says otherwise, its α is that of the model, and
+    /// its masking and shadowing are a product.
     fn roughness(&mut self, rough: bool, object: &mut Object<'t>) -> RoughnessDesc {
         let at = object.element.span;
         if !rough {
@@ -120,7 +123,7 @@ impl<'t> Builder<'t> {
                 (default(), default())
             }
         };
-        RoughnessDesc { u, v, remap: false, distribution }
+        RoughnessDesc { u, v, remap: false, distribution, shadowing: ShadowingKind::Separable }
     }
 
     /// By `eta` and `k`, by the name of a `material`, or a perfect mirror.

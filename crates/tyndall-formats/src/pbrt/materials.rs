@@ -7,7 +7,8 @@ use super::params::Params;
 use super::parser::Statement;
 use super::textures::Textures;
 use crate::desc::{
-    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, SpectrumDesc, Varying,
+    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
+    SpectrumDesc, Varying,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
@@ -141,5 +142,6 @@ fn roughness(p: &mut Params, textures: &Textures) -> RoughnessDesc {
         v: p.amount("vroughness", textures).unwrap_or(both),
         remap: p.boolean("remaproughness", true).value,
         distribution: MicrofacetKind::Ggx,
+        shadowing: ShadowingKind::Correlated,
     }
 }

@@ -10,12 +10,14 @@
 //! s(w)      = w_z erf(w_z/r) + r exp(−(w_z/r)²)/√π                    Beckmann
 //! Λ(w)      = (s/w_z − 1)/2,   G₁ = 1/(1 + Λ)                         Smith's masking, of both
 //! G₂(o, i)  = 1/(1 + Λ_o + Λ_i) = 2 o_z i_z / (s_o i_z + s_i o_z)     height-correlated masking and shadowing
+//! G₂(o, i)  = G₁(o) G₁(i)                                             separable masking and shadowing
 //! D_o(m)    = G₁(o) D(m) (o·m) / o_z = 2 D(m) (o·m) / (o_z + s_o)     visible normals [1/sr]
 //! ```
 //!
 //! Written with `s`, nothing divides by a cosine that vanishes at grazing angles, and a distribution is its `D`, its `s`
-//! and its way to draw visible normals. `G₂` serves reflection and transmission alike, as in pbrt; Mitsuba takes the
-//! product `G₁(o) G₁(i)`, which shadows more.
+//! and its way to draw visible normals. `G₂` serves reflection and transmission alike. Facets that are high are seen from
+//! both directions and low ones from neither: the correlated form (pbrt) knows that, the product (Mitsuba) does not and
+//! shadows more. With either, the weight of a visible normal is `G₂/G₁(o)`.
 //!
 //! Visible normals are drawn for unit roughness and stretched. Trowbridge and Reitz: a uniform point on a spherical cap,
 //! without a frame. Beckmann: across the plane of `o` the slope is Gaussian; within it, the slope `x` has the cumulative
@@ -25,6 +27,7 @@
 //! |---|---|---|
 //! | `alpha_x`, `alpha_y` | roughness along the tangents: the scale of the slopes \[1\] | about 0.001 to 1 |
 //! | `distribution` | the law of the slopes | |
+//! | `shadowing` | how masking and shadowing depend on each other | |
 //!
 //! Source: Beckmann and Spizzichino 1963; Trowbridge and Reitz 1975; Walter et al. 2007; Heitz 2014, "Understanding the
 //! masking-shadowing function"; sampling: Dupuy and Benyoub 2023, "Sampling visible GGX normals with spherical caps";
@@ -50,6 +53,16 @@ pub enum Distribution {
     Beckmann,
 }
 
+/// How what hides a microfacet from one direction and from another depend on each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shadowing {
+    /// By the height that both share (Heitz 2014, eq. 99), as pbrt has it.
+    #[default]
+    Correlated,
+    /// Not at all: a product, as Mitsuba has it.
+    Separable,
+}
+
 /// The microfacets of a rough surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Microfacets {
@@ -59,6 +72,8 @@ pub struct Microfacets {
     pub alpha_y: f32,
     /// The law of their slopes.
     pub distribution: Distribution,
+    /// How masking and shadowing depend on each other.
+    pub shadowing: Shadowing,
 }
 
 /// Slopes beyond this many times the roughness are left out of Beckmann's distribution: one in 10¹¹.
@@ -74,6 +89,7 @@ impl Microfacets {
             alpha_x: alpha_x.max(SMOOTHEST_ALPHA),
             alpha_y: alpha_y.max(SMOOTHEST_ALPHA),
             distribution: Distribution::TrowbridgeReitz,
+            shadowing: Shadowing::Correlated,
         })
     }
 
@@ -121,14 +137,22 @@ impl Microfacets {
     /// `G₂(wo, wi) / wo_z`, for directions with their z components taken positive.
     #[inline]
     pub fn masking_shadowing_over_cos(&self, wo: Vec3, wi: Vec3) -> f32 {
-        2.0 * wi.z / (self.stretched(wo) * wi.z + self.stretched(wi) * wo.z)
+        match self.shadowing {
+            Shadowing::Correlated => 2.0 * wi.z / (self.stretched(wo) * wi.z + self.stretched(wi) * wo.z),
+            Shadowing::Separable => 2.0 * self.masking(wi) / (wo.z + self.stretched(wo)),
+        }
     }
 
     /// `G₂(wo, wi) / G₁(wo)` in [0, 1], for directions with their z components taken positive.
     #[inline]
-    pub fn shadowing(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let so = self.stretched(wo);
-        wi.z * (wo.z + so) / (so * wi.z + self.stretched(wi) * wo.z)
+    pub fn shadowing_of_visible(&self, wo: Vec3, wi: Vec3) -> f32 {
+        match self.shadowing {
+            Shadowing::Correlated => {
+                let so = self.stretched(wo);
+                wi.z * (wo.z + so) / (so * wi.z + self.stretched(wi) * wo.z)
+            }
+            Shadowing::Separable => self.masking(wi),
+        }
     }
 
     /// `D_o(m)` [1/sr], the density of [`Self::sample_visible`], for `wo_z > 0`.

@@ -35,7 +35,7 @@ pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
-use microfacet::{Distribution, Microfacets};
+use microfacet::{Distribution, Microfacets, Shadowing};
 
 /// Surfaces whose roughness is below this in both directions are perfectly smooth: the lobe would be narrower than
 /// single precision can hold (as pbrt, Pharr et al. 2023, § 9.6).
@@ -189,19 +189,20 @@ impl Bsdf {
         self
     }
 
-    /// The same model with the slopes of its microfacets, if it has any, after another law.
+    /// The same model with its microfacets, if it has any, after other laws of slopes and of shadowing.
     #[must_use]
-    pub fn distributed(mut self, distribution: Distribution) -> Self {
-        match &mut self {
-            Self::RoughConductor(model) => model.microfacets.distribution = distribution,
-            Self::RoughDielectric(model) => model.microfacets.distribution = distribution,
+    pub fn distributed(mut self, distribution: Distribution, shadowing: Shadowing) -> Self {
+        let microfacets = match &mut self {
+            Self::RoughConductor(model) => &mut model.microfacets,
+            Self::RoughDielectric(model) => &mut model.microfacets,
             Self::Diffuse(_)
             | Self::Conductor(_)
             | Self::Dielectric(_)
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
-            | Self::Null => {}
-        }
+            | Self::Null => return self,
+        };
+        (microfacets.distribution, microfacets.shadowing) = (distribution, shadowing);
         self
     }
 

@@ -61,7 +61,7 @@ impl RoughConductor {
         let wi = 2.0 * cos * m - up;
         (wi.z > 0.0).then(|| BsdfSample {
             wi: seen_from(wo, wi),
-            weight: self.metal.reflected(cos) * self.microfacets.shadowing(up, wi),
+            weight: self.metal.reflected(cos) * self.microfacets.shadowing_of_visible(up, wi),
             pdf: self.microfacets.density(m) * 0.5 / (up.z + self.microfacets.stretched(up)),
             kind: ScatterKind::Reflection,
             specular: false,

@@ -88,7 +88,7 @@ impl RoughDielectric {
             let wi = 2.0 * cos_o * m - up;
             (wi.z > 0.0 && cos_o > 0.0).then(|| BsdfSample {
                 wi: seen_from(wo, wi),
-                weight: split.reflected * (self.microfacets.shadowing(up, wi) / split.p_reflect),
+                weight: split.reflected * (self.microfacets.shadowing_of_visible(up, wi) / split.p_reflect),
                 pdf: split.p_reflect * d / (4.0 * cos_o),
                 kind: ScatterKind::Reflection,
                 specular: false,
@@ -100,7 +100,8 @@ impl RoughDielectric {
             (wi.z < 0.0 && cos_o > 0.0).then(|| BsdfSample {
                 wi: seen_from(wo, wi),
                 weight: split.transmitted
-                    * (self.microfacets.shadowing(up, Vec3::new(wi.x, wi.y, -wi.z)) / (p_transmit * eta * eta)),
+                    * (self.microfacets.shadowing_of_visible(up, Vec3::new(wi.x, wi.y, -wi.z))
+                        / (p_transmit * eta * eta)),
                 pdf: p_transmit * d * refraction_jacobian(cos_o, -facet.cos_t, eta),
                 kind: ScatterKind::Transmission,
                 specular: false,

@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test file uses its own part
 
 use tyndall::{
-    bsdf::{Sides, microfacet::Distribution},
+    bsdf::Sides,
     camera::Camera,
     film::Filter,
     integrator::Integrator,
@@ -48,7 +48,6 @@ pub(crate) fn glass(eta: f32, alpha: f32) -> Material {
     Material::Dielectric {
         eta: Index::Constant(eta),
         alpha: Roughness::constant([alpha; 2]),
-        distribution: Distribution::TrowbridgeReitz,
         reflection_tint: 1.0.into(),
         transmission_tint: 1.0.into(),
     }

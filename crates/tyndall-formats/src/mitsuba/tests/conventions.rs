@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::*;
 use crate::desc::{
     Coefficients, ConductorOptics, EnvironmentMapping, FilterDesc, FovAxis, LightKind, MaterialKind, MicrofacetKind,
-    PhaseDesc, ShapeKind, SpectrumDesc, Varying,
+    PhaseDesc, ShadowingKind, ShapeKind, SpectrumDesc, Varying,
 };
 
 fn transformed(steps: &str) -> DMat4 {
@@ -95,6 +95,7 @@ fn what_a_scene_leaves_out_is_as_mitsuba_documents_it() {
         panic!()
     };
     assert_eq!((optics, roughness.distribution), (ConductorOptics::Mirror, MicrofacetKind::Beckmann));
+    assert_eq!(roughness.shadowing, ShadowingKind::Separable);
     assert_eq!(roughness.alpha(), Some([0.1; 2]));
 
     let medium = &parsed(&scene("<medium type=\"homogeneous\"/>")).media[0];
