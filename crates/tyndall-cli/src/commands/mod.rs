@@ -4,3 +4,4 @@ pub(crate) mod compare;
 pub(crate) mod info;
 pub(crate) mod lecture;
 pub(crate) mod render;
+pub(crate) mod verify;

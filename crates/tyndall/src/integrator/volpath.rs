@@ -70,10 +70,24 @@ impl Integrator for VolPath {
 }
 
 impl Path {
-    /// One event of the path: a term of the transport equation each.
+    /// Finds the next event and responds to it.
     #[inline]
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
-        match self.next_event(scene, tally) {
+        let event = self.next_event(scene, tally);
+        self.respond(event, scene, settings, sink, tally)
+    }
+
+    /// What an event does to the path: a term of the transport equation each.
+    #[inline]
+    pub fn respond(
+        &mut self,
+        event: Event,
+        scene: &Scene,
+        settings: &VolPath,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) -> Status {
+        match event {
             Event::Escape => {
                 self.find_environment(scene, sink);
                 Status::Done
@@ -100,7 +114,7 @@ impl Path {
                 let vertex = Vertex::Medium { p, dir: self.ray.dir, phase };
                 self.scatter(scene, settings, &vertex, false, sink, tally)
             }
-            Event::Absorb { emitted } => {
+            Event::Absorb { emitted, .. } => {
                 self.find_emission(emitted, sink);
                 Status::Done
             }

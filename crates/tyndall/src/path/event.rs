@@ -26,6 +26,8 @@ pub enum Event {
     },
     /// A collision in a medium that only absorbs; or a path that has leaked out of its medium, which is tallied.
     Absorb {
+        /// Where [length].
+        p: Vec3,
         /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
         emitted: Lanes,
     },
@@ -76,7 +78,7 @@ impl Path {
         let p = self.ray.at(flight);
         if !scene.may_contain(*id, p) {
             tally.leaks += 1;
-            return Event::Absorb { emitted: Lanes::ZERO };
+            return Event::Absorb { p, emitted: Lanes::ZERO };
         }
         tally.collisions += 1;
         let transmittance = coefficients.transmittance(flight);
@@ -86,7 +88,7 @@ impl Path {
             coefficients.source * self.weights.volume_emission(coefficients.sigma_t, transmittance)
         };
         if coefficients.sigma_s.is_zero() {
-            return Event::Absorb { emitted };
+            return Event::Absorb { p, emitted };
         }
         self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
         Event::Scatter { p, emitted }
