@@ -15,6 +15,7 @@
 
 pub mod ball;
 
+pub mod mci;
 pub mod photon;
 pub mod point;
 pub mod run;

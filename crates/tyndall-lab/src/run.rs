@@ -101,7 +101,9 @@ pub fn run(
     while sums.batches < batches {
         let round = sums.batches..(sums.batches + ROUND).min(batches);
         let done: Vec<Batch> = round.into_par_iter().map(&batch).collect();
-        done.iter().for_each(|batch| sums.add(batch));
+        for batch in &done {
+            sums.add(batch);
+        }
         if look(&sums) == Verdict::Enough && sums.batches >= 2 {
             break;
         }
