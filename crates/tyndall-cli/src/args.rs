@@ -5,7 +5,7 @@ use std::{path::PathBuf, time::Duration};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use tyndall::film::Crop;
 
-use crate::values;
+use crate::{commands::lab::options::Instrument, values};
 
 /// A renderer for light that scatters many times: milk, marble, skin, fog.
 #[derive(Debug, Parser)]
@@ -26,6 +26,9 @@ pub(crate) enum Command {
     Lecture(LectureOptions),
     /// Tell what is in a scene, without rendering it
     Info(InfoOptions),
+    /// Measure with a virtual instrument: plane layers, a point source, a ball, a random walk
+    #[command(subcommand)]
+    Lab(Box<Instrument>),
     /// Measure published numbers, and say whether the program reproduces them
     Verify(VerifyOptions),
 }

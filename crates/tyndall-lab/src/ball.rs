@@ -22,6 +22,8 @@ pub enum Source {
 /// What became of the light.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Balance {
+    /// Photons.
+    pub photons: u64,
     /// Absorbed part \[1\].
     pub absorbed: Estimate,
     /// Part that leaves \[1\].
@@ -79,6 +81,7 @@ pub fn balance(
     };
     let sums = run(2 + ORDERS, photons, batch, look);
     Ok(Balance {
+        photons: sums.photons(),
         absorbed: sums.estimate(0),
         escaped: sums.estimate(1),
         unscattered: sums.estimate(2),

@@ -48,6 +48,8 @@ impl Detector for Recorder<'_> {
 /// The fluence by distance, and its moments.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Fluence {
+    /// Photons.
+    pub photons: u64,
     /// By distance.
     pub shells: Vec<Shell>,
     /// `∫ 4π r² φ dr` [length].
@@ -92,6 +94,7 @@ pub fn fluence(
     };
     let last = radii.len() - 1;
     Ok(Fluence {
+        photons: sums.photons(),
         shells: radii.windows(2).enumerate().map(shell).collect(),
         m0: sums.estimate(last).scaled(by_sigma),
         m2: sums.estimate(last + 1).scaled(by_sigma),

@@ -19,6 +19,8 @@ use crate::world::{SetupError, Substance, World};
 pub struct Moments {
     /// Free flights so far.
     pub flights: u32,
+    /// Photons.
+    pub photons: u64,
     /// Mean place along the first direction.
     pub z: Estimate,
     /// Mean squared distance.
@@ -73,6 +75,7 @@ pub fn moments(
     let sums = run(3 * flights.len(), photons, batch, look);
     let moment = |i: usize, n: u32| Moments {
         flights: n,
+        photons: sums.photons(),
         z: sums.estimate(3 * i),
         r2: sums.estimate(3 * i + 1),
         z2: sums.estimate(3 * i + 2),

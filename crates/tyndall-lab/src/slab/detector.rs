@@ -22,7 +22,7 @@ pub(super) struct Layout {
     pub(super) quantities: usize,
 }
 
-/// The first quantities: what leaves upwards and downwards, unscattered, scattered, and all.
+/// The first quantities: what leaves upwards and downwards, of each all, the unscattered and the scattered.
 const EXITS: usize = 6;
 
 impl Layout {
@@ -60,13 +60,13 @@ impl Layout {
         Measured {
             photons: sums.photons(),
             collisions: sums.tally.collisions,
-            specular: sums.estimate(0),
+            specular: sums.estimate(1),
             first_surface: first_surface(setup),
-            diffuse: sums.estimate(1),
-            reflectance: sums.estimate(2),
-            unscattered: sums.estimate(3),
-            diffuse_transmittance: sums.estimate(4),
-            transmittance: sums.estimate(5),
+            diffuse: sums.estimate(2),
+            reflectance: sums.estimate(0),
+            unscattered: sums.estimate(4),
+            diffuse_transmittance: sums.estimate(5),
+            transmittance: sums.estimate(3),
             absorbed: per(&self.absorbed, &whole),
             reflectance_by_angle: per(&self.angle[0], &solid_angle),
             transmittance_by_angle: per(&self.angle[1], &solid_angle),
@@ -145,8 +145,8 @@ impl Detector for Recorder<'_> {
             return;
         }
         let scattered = photon.order() > 0;
-        self.totals[3 * side + usize::from(scattered)] += weight;
-        self.totals[3 * side + 2] += weight;
+        self.totals[3 * side] += weight;
+        self.totals[3 * side + 1 + usize::from(scattered)] += weight;
         self.add(&layout.order[side], Some(photon.order() as usize), weight);
         if scattered || side == 1 {
             let angle = f64::from(dir.z.abs()).min(1.0).acos() / FRAC_PI_2 * bins.angles as f64;
