@@ -158,7 +158,7 @@ fn draw_panel<B: DrawingBackend>(
         .bold_line_style(BLACK.mix(0.15))
         .draw()?;
     for (curve, color) in curves.iter().zip(COLORS.into_iter().cycle()) {
-        let steps = curve.bins.iter().filter(|bin| bin.estimate.mean > low);
+        let steps = curve.bins.iter().filter(|bin| bin.estimate.mean >= low);
         let step = |bin: &Bin| {
             PathElement::new([(bin.start, bin.estimate.mean), (bin.end, bin.estimate.mean)], color.stroke_width(2))
         };
