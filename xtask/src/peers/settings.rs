@@ -65,6 +65,7 @@ pub(crate) fn duels() -> Vec<Duel> {
         duel("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 6),
         duel("a2_marble_cube_spot", Scalar, DEEP_IN_GLASS, 2, 2),
         duel("a3_marble_cube_rough_spot", Scalar, DEEP_IN_GLASS, 8, 6),
+        duel("a4_marble_cube_frosted_spot", Scalar, DEEP_IN_GLASS, 24, 20),
         duel("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 3),
     ]
 }
