@@ -39,7 +39,7 @@ impl<'t> Builder<'t> {
         let emitter = object.only("emitter", &mut self.report);
         let emission = emitter.and_then(|emitter| self.area_light(emitter.element));
         let bsdf = object.only("bsdf", &mut self.report);
-        let material = bsdf.and_then(|bsdf| Some(Spanned::new(self.material(bsdf.element)?, bsdf.at.span)));
+        let material = bsdf.and_then(|bsdf| Some(Spanned::new(self.material(bsdf.element, false)?, bsdf.at.span)));
         let material =
             material.unwrap_or_else(|| Spanned::new(self.default_material(element, emitter.is_some()), element.span));
         let interface = self.interface(&mut object);
@@ -50,7 +50,17 @@ impl<'t> Builder<'t> {
         object.ignore(&["silhouette_sampling_weight"], "silhouettes are not sampled", report);
         object.finish(report);
         let name = element.attribute("id").map(|id| id.value.clone());
-        Some(ShapeDesc { span: element.span, name, kind, to_world, reverse_orientation, material, emission, interface })
+        Some(ShapeDesc {
+            span: element.span,
+            name,
+            kind,
+            to_world,
+            reverse_orientation,
+            material,
+            opacity: None,
+            emission,
+            interface,
+        })
     }
 
     fn shape_kind(&mut self, plugin: &str, object: &mut Object<'t>, to_world: &mut DMat4) -> Option<ShapeKind> {

@@ -26,10 +26,10 @@ impl Reader {
             "bilinearmesh" => patches(&mut p).map(ShapeKind::BilinearMesh),
             _ => ply(&mut p),
         };
-        p.later_unless("alpha", 1.0);
+        let opacity = p.number("alpha", &self.textures, |_| true).filter(|a| a.value.number().is_none_or(|a| a < 1.0));
         self.finish_params(p);
         if let Some(kind) = kind {
-            let shape = self.bound(&s, kind);
+            let shape = ShapeDesc { opacity, ..self.bound(&s, kind) };
             self.place(shape);
         }
     }
@@ -51,6 +51,7 @@ impl Reader {
             to_world: now.ctm,
             reverse_orientation: now.reverse_orientation ^ mirrored,
             material,
+            opacity: None,
             emission: now.area_light.as_deref().cloned(),
             interface: now.interface,
         }

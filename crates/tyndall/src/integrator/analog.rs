@@ -72,11 +72,15 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             }
             Some(hit) => {
                 let surface = scene.geometry.interaction(&ray, &hit);
+                let material = scene.meet(&surface, ray.dir, || sampler.next_1d());
+                if matches!(material, Material::Hole) {
+                    ray = surface.spawn(ray.dir);
+                    continue;
+                }
                 if let Some((_, light)) = scene.light_at(&surface) {
                     radiance += throughput * light.le(surface.ng, -ray.dir, w).lane(lane);
                 }
                 let interface = scene.object(&surface).interface.map(|i| (i, surface.ng));
-                let material = scene.material(&surface);
                 if matches!(material, Material::Null) {
                     inside = beyond(scene, inside, interface, &ray, w);
                     ray = surface.spawn(ray.dir);
@@ -87,7 +91,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             }
         };
 
-        radiance += throughput * dirac_lights(scene, &vertex, inside, interface, w, lane, tally);
+        radiance += throughput * dirac_lights(scene, &vertex, inside, interface, w, lane, sampler, tally);
         let Some(next) = vertex.sample([sampler.next_1d(), sampler.next_1d(), sampler.next_1d()]) else {
             return radiance;
         };
@@ -122,7 +126,8 @@ fn beyond(
     interface.map_or(inside, |(media, ng)| Inside::of(scene, media.towards(ray.dir.dot(ng)), w))
 }
 
-/// What lights without extent give at a vertex: all of them.
+/// What lights without extent give at a vertex: all of them. Lights without a surface belong to them.
+#[allow(clippy::too_many_arguments)] // what a path is, in pieces
 fn dirac_lights(
     scene: &Scene,
     vertex: &Vertex,
@@ -130,23 +135,29 @@ fn dirac_lights(
     interface: Option<(MediumInterface, crate::math::Vec3)>,
     w: &Wavelengths,
     lane: usize,
+    sampler: &mut Sampler,
     tally: &mut Tally,
 ) -> f32 {
     if !vertex.can_use_light_samples() {
         return 0.0;
     }
     let reference = vertex.reference();
-    let dirac = |l: &&Light| matches!(l, Light::Point(_) | Light::Spot(_) | Light::Distant(_));
+    let dirac = |l: &&Light| match l {
+        Light::Point(_) | Light::Spot(_) | Light::Distant(_) => true,
+        Light::Area(light) => light.opacity == 0.0,
+        Light::Constant(_) | Light::Map(_) => false,
+    };
     let mut sum = 0.0;
     for light in scene.lights.lights.iter().filter(dirac) {
-        let Some(sample) = light.sample(&reference, Vec2::ZERO, w) else { continue };
+        let u = if matches!(light, Light::Area(_)) { sampler.next_2d() } else { Vec2::ZERO };
+        let Some(sample) = light.sample(&reference, u, w) else { continue };
         let f = vertex.eval(sample.dir).0.lane(lane);
         let origin = vertex.shadow_origin(sample.dir);
         let start = beyond(scene, inside, interface, &Ray::new(origin, sample.dir), w);
         if f > 0.0
             && let Some(t) = shadow::transmittance(scene, origin, sample.dir, &sample.target, start, w, tally)
         {
-            sum += f * sample.li.lane(lane) * t.lane(lane);
+            sum += f * sample.li.lane(lane) * t.lane(lane) / sample.pdf;
         }
     }
     sum

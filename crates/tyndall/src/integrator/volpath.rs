@@ -93,13 +93,20 @@ impl Path {
                 Status::Done
             }
             Event::Surface(hit) => {
-                self.find_emitter(scene, &hit, sink);
-                match scene.material(&hit) {
+                let sampler = &mut self.sampler;
+                match scene.meet(&hit, self.ray.dir, || sampler.next_1d()) {
+                    Material::Hole => {
+                        self.pass_opening(scene, &hit);
+                        self.ray = hit.spawn(self.ray.dir);
+                        Status::Alive
+                    }
                     Material::Null => {
+                        self.find_emitter(scene, &hit, sink);
                         self.cross(scene, &hit);
                         Status::Alive
                     }
                     material => {
+                        self.find_emitter(scene, &hit, sink);
                         tally.surface_vertices += 1;
                         let bsdf = material.bsdf(&(&hit).into(), &self.wavelengths, self.hero);
                         let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
@@ -159,8 +166,18 @@ impl Path {
 
     /// Straight on through a surface without a material.
     fn cross(&mut self, scene: &Scene, hit: &Interaction) {
+        self.pass_opening(scene, hit);
         self.enter(scene, hit);
         self.ray = hit.spawn(self.ray.dir);
+    }
+
+    /// A surface that is open in part was passed with that probability: as a medium is, for light sampling through it.
+    fn pass_opening(&mut self, scene: &Scene, hit: &Interaction) {
+        self.history.passed();
+        if !matches!(scene.material(hit), Material::Null) {
+            let open = scene.openness(hit, self.ray.dir).part;
+            self.weights.pass(Lanes::splat(open), self.hero);
+        }
     }
 
     /// Enters the medium on the far side of a surface.

@@ -15,6 +15,7 @@ use std::{
 use crate::{
     bsdf::Bsdf,
     light::Target,
+    material::Material,
     math::{Ray, Vec3, rounding::gamma},
     medium::Inside,
     path::{Vertex, shadow},
@@ -199,16 +200,25 @@ impl<'a> World<'a> {
         }
         self.depth += 1;
         self.tally.rays += 1;
-        let (ray, inside) = self.leave(x, omega);
-        let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
-            return Some(Point { place: Place::Infinity, inside, distance: f32::INFINITY });
-        };
-        // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
-        let distance = hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
-        let hit = self.scene.geometry.interaction(&ray, &hit);
-        let bsdf = self.scene.material(&hit).bsdf(&(&hit).into(), &self.wavelengths, self.lane);
-        let from_outside = omega.dot(hit.ng) < 0.0;
-        Some(Point { place: Place::Surface { hit, bsdf, from_outside }, inside, distance })
+        let (mut ray, inside) = self.leave(x, omega);
+        let mut gone = 0.0;
+        loop {
+            let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
+                return Some(Point { place: Place::Infinity, inside, distance: f32::INFINITY });
+            };
+            // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
+            let distance = gone + hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
+            let met = self.scene.geometry.interaction(&ray, &hit);
+            let material = self.scene.meet(&met, omega, || self.sampler.next_1d());
+            if matches!(material, Material::Hole) {
+                gone += hit.t;
+                ray = met.spawn(omega);
+                continue;
+            }
+            let bsdf = material.bsdf(&(&met).into(), &self.wavelengths, self.lane);
+            let from_outside = omega.dot(met.ng) < 0.0;
+            return Some(Point { place: Place::Surface { hit: met, bsdf, from_outside }, inside, distance });
+        }
     }
 
     /// `traceRay` past all surfaces without a material, whatever they emit.
@@ -359,11 +369,10 @@ impl<'a> World<'a> {
         Some((sample.dir, Luminaire { emitted_radiance, target: sample.target }, probability * sample.pdf))
     }
 
-    /// Whether `y` is the first thing that a ray from `x` along `ω′` meets: 1 or 0.
+    /// Whether `y` is the first thing that a ray from `x` along `ω′` meets: 1 or 0, or what is open of the surfaces between.
     pub(super) fn visibility(&mut self, x: &Point, omega_prime: Vec3, y: &Luminaire) -> f32 {
         let origin = self.leave(x, omega_prime).0.origin;
-        let seen = shadow::visible(self.scene, origin, omega_prime, &y.target, self.tally);
-        f32::from(u8::from(seen))
+        shadow::visible(self.scene, origin, omega_prime, &y.target, self.tally)
     }
 
     /// `attenuation(x, y)`: `exp(−∫ σ_t)` from `x` along `ω′` to `y`, 0 where a surface stands between.

@@ -64,7 +64,12 @@ impl Path {
             Some(coefficients) => {
                 let sigma_t = coefficients.sigma_t.lane(self.hero);
                 if sigma_t > 0.0 {
-                    -fast::ln(self.sampler.flight(self.history.vertices)) / sigma_t
+                    // The stratified number of a vertex serves once: behind a boundary it has been looked at already.
+                    let u = match self.history.passed {
+                        0 => self.sampler.flight(self.history.vertices),
+                        _ => self.sampler.rng.next_positive(),
+                    };
+                    -fast::ln(u) / sigma_t
                 } else {
                     f32::INFINITY
                 }

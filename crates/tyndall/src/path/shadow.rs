@@ -1,8 +1,7 @@
-//! Whether light arrives: shadow rays, through surfaces without a material, with analytic transmittance.
+//! Whether light arrives: shadow rays, through surfaces without a material or with holes, with analytic transmittance.
 
 use crate::{
     light::Target,
-    material::Material,
     math::{Ray, Vec3, rounding::gamma},
     medium::Inside,
     scene::Scene,
@@ -45,11 +44,12 @@ pub fn transmittance(
         }
         let Some(hit) = hit else { return Some(transmittance) };
         let surface = scene.geometry.interaction(&ray, &hit);
-        let object = scene.object(&surface);
-        if !matches!(scene.materials[object.material.0 as usize], Material::Null) {
+        let open = scene.openness(&surface, ray.dir);
+        if open.part <= 0.0 {
             return None;
         }
-        if let Some(interface) = object.interface {
+        transmittance *= open.part;
+        if let Some(interface) = scene.object(&surface).interface.filter(|_| open.crosses) {
             inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
         }
         let next = surface.spawn(ray.dir).origin;
@@ -60,19 +60,22 @@ pub fn transmittance(
     }
 }
 
-/// Whether no surface with a material stands between `origin` and a light, media left out of account.
-pub fn visible(scene: &Scene, origin: Vec3, dir: Vec3, target: &Target, tally: &mut Tally) -> bool {
+/// What of the way from `origin` to a light no surface blocks \[1\], media left out of account: 1 or 0, but for surfaces
+/// that are open in part.
+pub fn visible(scene: &Scene, origin: Vec3, dir: Vec3, target: &Target, tally: &mut Tally) -> f32 {
     let (mut ray, mut t_max) = segment(origin, dir, target);
+    let mut open = 1.0;
     loop {
         tally.shadow_rays += 1;
-        let Some(hit) = scene.geometry.intersect(&ray, t_max) else { return true };
+        let Some(hit) = scene.geometry.intersect(&ray, t_max) else { return open };
         let surface = scene.geometry.interaction(&ray, &hit);
-        if !matches!(scene.material(&surface), Material::Null) {
-            return false;
+        open *= scene.openness(&surface, ray.dir).part;
+        if open <= 0.0 {
+            return 0.0;
         }
         (ray, t_max) = segment(surface.spawn(ray.dir).origin, dir, target);
         if t_max <= 0.0 {
-            return true;
+            return open;
         }
     }
 }
