@@ -76,9 +76,7 @@ impl Builder<'_> {
         materials.extend(self.made.take());
         let media = media.into_iter().collect::<Option<Vec<_>>>()?;
         let (shapes, lights, camera) = (shapes?, lights?, camera?);
-        let middle = shapes.geometry.bounds().centre();
-        let middle = if middle.is_finite() { middle } else { glam::Vec3::ZERO };
-        let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect(), middle);
+        let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect());
         Some(Scene::new(color, camera, shapes.geometry, shapes.objects, materials, media, table))
     }
 

@@ -94,6 +94,22 @@ impl EmitterShape {
         }
     }
 
+    /// The greatest area that it shows to any side [length²].
+    pub fn projected_area(&self) -> f32 {
+        match *self {
+            Self::Sphere { radius, .. } => PI * radius * radius,
+            _ => self.area(),
+        }
+    }
+
+    /// The side that shines, of a flat emitter.
+    pub fn normal(&self) -> Option<Vec3> {
+        match *self {
+            Self::Triangle { ng, .. } | Self::Parallelogram { ng, .. } | Self::Disk { ng, .. } => Some(ng),
+            Self::Sphere { .. } => None,
+        }
+    }
+
     /// The box around it.
     pub fn bounds(&self) -> Bounds {
         match *self {

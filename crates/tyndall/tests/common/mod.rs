@@ -248,7 +248,7 @@ impl World {
     }
 
     pub(crate) fn scene(self) -> Scene {
-        let table = LightTable::new(self.lights, Vec3::ZERO);
+        let table = LightTable::new(self.lights);
         Scene::new(
             self.color,
             self.camera,
