@@ -176,7 +176,7 @@ impl World {
             medium,
         };
         let geometry = self.builder.build()?;
-        let lights = LightTable::new(Vec::new(), Vec3::ZERO);
+        let lights = LightTable::new(Vec::new());
         Ok(Scene::new(ColorMode::Mono, camera, geometry, self.objects, self.materials, self.media, lights))
     }
 }

@@ -27,7 +27,7 @@ fn point(position: Vec3, luminance: f32) -> Light {
 }
 
 fn area(shape: EmitterShape, luminance: f32, two_sided: bool) -> Light {
-    Light::Area(AreaLight { shape, radiance: Spectrum::constant(luminance), luminance, two_sided })
+    Light::Area(AreaLight { shape, radiance: Spectrum::constant(luminance), luminance, two_sided, opacity: 1.0 })
 }
 
 fn triangle(a: Vec3, e1: Vec3, e2: Vec3) -> EmitterShape {
