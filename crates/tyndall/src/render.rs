@@ -181,7 +181,8 @@ fn render_tile(
     }
 }
 
-/// One sample of one pixel: radiance, and linear sRGB (which may be negative for a single wavelength).
+/// One sample of one pixel: radiance, and linear sRGB (which may be negative for a single wavelength, and where the
+/// filter is).
 fn sample_pixel(
     scene: &Scene,
     integrator: &dyn Integrator,
@@ -191,10 +192,11 @@ fn sample_pixel(
     tally: &mut Tally,
 ) -> (Lanes, [f32; 3]) {
     let mut sampler = Sampler::new(settings.sampler, pixel, index, settings.seed);
-    let ray = scene.camera.sample_ray(pixel, sampler.camera());
+    let (ray, weight) = scene.camera.sample_ray(pixel, sampler.camera());
     let [u_wavelength, u_hero] = sampler.wavelength();
     let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
     tally.paths += 1;
     let radiance = integrator.li(scene, ray, wavelengths, u_hero, &mut sampler, tally);
-    (radiance, film_rgb(radiance, &wavelengths).map(|v| v * scene.camera.exposure))
+    let factor = scene.camera.exposure * weight;
+    (radiance, film_rgb(radiance, &wavelengths).map(|v| v * factor))
 }

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use glam::DMat4;
 use tyndall::{
     camera::Camera,
-    film::{Crop, Filter},
+    film::{Crop, Filter, Kernel, Lobed},
     light::LightTable,
     math::Transform,
     scene::Scene,
@@ -87,17 +87,22 @@ impl Builder<'_> {
 
     fn filter(&mut self, filter: &FilterDesc, span: Span) -> Option<Filter> {
         let radii = |r: [f64; 2]| r.map(|v| v as f32);
-        Some(match *filter {
-            FilterDesc::Box { radius } => Filter::Box { radius: radii(radius) },
-            FilterDesc::Triangle { radius } => Filter::Triangle { radius: radii(radius) },
-            FilterDesc::Gaussian { radius, sigma } => Filter::Gaussian { radius: radii(radius), sigma: sigma as f32 },
-            FilterDesc::Mitchell { .. } | FilterDesc::Sinc { .. } => {
-                return self.fail(
-                    SceneError::at(span, "filters with negative lobes are not known yet")
-                        .help("use a box, triangle or gaussian filter"),
-                );
+        let mut lobed = |kernel, radius| match Lobed::new(kernel, radii(radius)) {
+            Some(lobed) => Some(Filter::Lobed(lobed)),
+            None => self.fail(
+                SceneError::at(span, "this filter has no positive integral: its lobes cancel")
+                    .help("use smaller B and C, or a wider tau"),
+            ),
+        };
+        match *filter {
+            FilterDesc::Box { radius } => Some(Filter::Box { radius: radii(radius) }),
+            FilterDesc::Triangle { radius } => Some(Filter::Triangle { radius: radii(radius) }),
+            FilterDesc::Gaussian { radius, sigma } => {
+                Some(Filter::Gaussian { radius: radii(radius), sigma: sigma as f32 })
             }
-        })
+            FilterDesc::Mitchell { radius, b, c } => lobed(Kernel::Mitchell { b, c }, radius),
+            FilterDesc::Sinc { radius, tau } => lobed(Kernel::Sinc { tau }, radius),
+        }
     }
 
     fn transform(&mut self, matrix: DMat4, span: Span) -> Option<Transform> {

@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// A pinhole camera and the raster behind it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     /// Camera space to world.
     pub to_world: Transform,
@@ -26,12 +26,12 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A ray through pixel `(x, y)` (row 0 on top) for four uniform numbers: two for the place in the filter, two for
-    /// a lens that a pinhole does not have.
+    /// A ray through pixel `(x, y)` (row 0 on top) for four uniform numbers, two for the place in the filter, two for
+    /// a lens that a pinhole does not have; and what the sample weighs [1].
     #[inline]
-    pub fn sample_ray(&self, pixel: (u32, u32), u: [f32; 4]) -> Ray {
-        let [dx, dy] = self.filter.sample([u[0], u[1]]);
-        self.ray_through(pixel.0 as f32 + 0.5 + dx, pixel.1 as f32 + 0.5 + dy)
+    pub fn sample_ray(&self, pixel: (u32, u32), u: [f32; 4]) -> (Ray, f32) {
+        let ([dx, dy], weight) = self.filter.sample([u[0], u[1]]);
+        (self.ray_through(pixel.0 as f32 + 0.5 + dx, pixel.1 as f32 + 0.5 + dy), weight)
     }
 
     /// The ray through a place on the raster [pixels from the upper left corner].

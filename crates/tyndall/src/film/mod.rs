@@ -4,8 +4,10 @@
 //! of the image is the image of the crop, and films of the same scene merge by addition.
 
 pub mod filter;
+pub mod lobed;
 
 pub use filter::Filter;
+pub use lobed::{Kernel, Lobed};
 
 /// A rectangle of pixels, `min ≤ (x, y) < max`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
