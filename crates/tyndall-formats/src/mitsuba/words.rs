@@ -49,8 +49,20 @@ const PLUGINS: &[Plugins] = &[
     Plugins { tag: "film", known: &["hdrfilm"], later: &["specfilm"] },
     Plugins {
         tag: "integrator",
-        known: &["path", "volpath", "volpathmis", "direct"],
-        later: &["aov", "depth", "moment", "ptracer", "stokes"],
+        known: &[
+            "path",
+            "volpath",
+            "volpathmis",
+            "direct",
+            "ptracer",
+            "moment",
+            "prb",
+            "prb_basic",
+            "prb_projective",
+            "prbvolpath",
+            "direct_projective",
+        ],
+        later: &["aov", "depth", "stokes"],
     },
     Plugins { tag: "medium", known: &["homogeneous"], later: &["heterogeneous"] },
     Plugins { tag: "phase", known: &["isotropic", "hg", "rayleigh"], later: &["blendphase", "sggx", "tabphase"] },
@@ -62,8 +74,8 @@ const PLUGINS: &[Plugins] = &[
     },
     Plugins {
         tag: "sensor",
-        known: &["perspective"],
-        later: &["batch", "distant", "irradiancemeter", "orthographic", "radiancemeter", "thinlens"],
+        known: &["perspective", "thinlens", "orthographic", "irradiancemeter", "radiancemeter", "batch"],
+        later: &["distant"],
     },
     Plugins {
         tag: "shape",

@@ -11,7 +11,7 @@ impl FilmDesc {
     /// The film of a file that has none.
     pub(super) fn pbrt_default(span: Span) -> Self {
         let filter = FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 };
-        Self { span, width: 1280, height: 720, crop: None, filename: None, filter, exposure: 1.0 }
+        Self { span, width: 1280, height: 720, crop: None, filename: None, diagonal: 35.0, filter, exposure: 1.0 }
     }
 }
 
@@ -36,7 +36,7 @@ impl Reader {
         let crop = crop(&mut p, width, height);
         let filename = p.string_opt("filename");
         let exposure = p.positive("iso", 100.0).value / 100.0;
-        p.ignore("diagonal", "the perspective camera does not depend on the size of the film");
+        let diagonal = p.positive("diagonal", 35.0).value;
         p.ignore("savefp16", "images are written in single precision");
         p.later_unless("whitebalance", 0.0);
         p.later("maxcomponentvalue");
@@ -53,7 +53,8 @@ impl Reader {
             self.ignore(s.whole, "it replaces the film before");
         }
         let filter = FilmDesc::pbrt_default(s.whole).filter;
-        self.settings.film = Some(FilmDesc { span: s.whole, width, height, crop, filename, filter, exposure });
+        self.settings.film =
+            Some(FilmDesc { span: s.whole, width, height, crop, filename, diagonal, filter, exposure });
     }
 
     pub(super) fn filter(&mut self, mut s: Statement<'_>) {
