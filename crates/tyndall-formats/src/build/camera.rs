@@ -39,7 +39,7 @@ impl Builder<'_> {
             filter,
             exposure: film.exposure as f32,
             medium: camera.medium.map(|m| medium_id(m.value)),
-            layers: Vec::new(),
+            layers: film.layers.iter().chain(&self.desc.integrator.layers).cloned().collect(),
         })
     }
 

@@ -1,6 +1,7 @@
 //! The camera and its film.
 
 use glam::DMat4;
+use tyndall::film::LayerKind;
 
 use super::{FileRef, MediumId, Span, Spanned};
 
@@ -217,6 +218,8 @@ pub struct FilmDesc {
     pub diagonal: f64,
     /// Reconstruction filter.
     pub filter: FilterDesc,
+    /// What is recorded beside light.
+    pub layers: Vec<LayerKind>,
     /// Factor on every value (pbrt: `iso` / 100 × time that the shutter is open), 1 by default.
     pub exposure: f64,
 }

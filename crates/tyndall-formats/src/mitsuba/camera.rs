@@ -201,7 +201,17 @@ fn check_rigid(to_world: DMat4, element: &Element, report: &mut Report) {
 
 fn default_film(span: Span) -> FilmDesc {
     let filter = gaussian(0.5);
-    FilmDesc { span, width: 768, height: 576, crop: None, filename: None, diagonal: 35.0, filter, exposure: 1.0 }
+    FilmDesc {
+        span,
+        width: 768,
+        height: 576,
+        crop: None,
+        filename: None,
+        diagonal: 35.0,
+        filter,
+        layers: Vec::new(),
+        exposure: 1.0,
+    }
 }
 
 fn film_desc<'t>(builder: &mut Builder<'t>, element: &'t Element) -> Option<FilmDesc> {

@@ -1,5 +1,8 @@
 //! `<integrator>`: what makes the same image is mapped to ours, with a note where something is different.
 
+use tyndall::film::LayerKind;
+
+use super::aov;
 use super::object::{Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
@@ -9,7 +12,8 @@ use crate::error::SceneError;
 use crate::source::Spanned;
 
 /// Integrators that work in another way and make the same image.
-const DIFFERENT: [(&str, &str); 7] = [
+const DIFFERENT: [(&str, &str); 8] = [
+    ("depth", "the distance is the layer `depth.T` of the image, beside the light"),
     ("ptracer", "paths start at the camera, not at the lights: the same image"),
     ("prb", NO_DERIVATIVES),
     ("prb_basic", NO_DERIVATIVES),
@@ -26,9 +30,15 @@ pub(super) fn integrator<'t>(builder: &mut Builder<'t>, element: &'t Element) ->
         builder.report.ignored.push(Ignored { span: element.span_of("type"), reason });
     }
     let mut object = builder.object(element);
-    if name == "moment" {
-        return inner(builder, object);
+    match name {
+        "moment" => return inner(builder, object, Vec::new()),
+        "aov" => {
+            let layers = aov::layers(&mut object, &mut builder.report);
+            return inner(builder, object, layers);
+        }
+        _ => {}
     }
+    let layers = if name == "depth" { vec![aov::layer("depth", "depth")?] } else { Vec::new() };
     let report = &mut builder.report;
     let hide_emitters = object.flag("hide_emitters", false, report);
     let (max_depth, rr_depth) = if name.starts_with("direct") {
@@ -53,24 +63,31 @@ pub(super) fn integrator<'t>(builder: &mut Builder<'t>, element: &'t Element) ->
         max_depth,
         rr_depth,
         hide_emitters,
+        layers,
     })
 }
 
 /// The integrator inside of another one.
-fn inner<'t>(builder: &mut Builder<'t>, mut object: Object<'t>) -> Option<IntegratorDesc> {
+fn inner<'t>(builder: &mut Builder<'t>, mut object: Object<'t>, layers: Vec<LayerKind>) -> Option<IntegratorDesc> {
     let child = object.only("integrator", &mut builder.report);
     object.ignore(&["block_size", "samples_per_pass"], "tiles and passes do not change the image", &mut builder.report);
     let span = object.element.span;
     object.finish(&mut builder.report);
     let Some(child) = child else {
-        builder.report.errors.push(SceneError::at(span, "it has no <integrator> inside"));
-        return None;
+        if layers.is_empty() {
+            builder.report.errors.push(SceneError::at(span, "it has no <integrator> inside"));
+            return None;
+        }
+        return Some(IntegratorDesc { layers, ..super::scene::default_integrator(span) });
     };
-    if child.element.text("type") == "moment" {
-        builder.report.errors.push(SceneError::at(child.at.span, "moments of moments are not known"));
+    if matches!(child.element.text("type"), "moment" | "aov") {
+        let message = format!("a \"{}\" inside of another is not known", child.element.text("type"));
+        builder.report.errors.push(SceneError::at(child.at.span, message));
         return None;
     }
-    integrator(builder, child.element)
+    let inside = integrator(builder, child.element)?;
+    let layers = layers.into_iter().chain(inside.layers).collect();
+    Some(IntegratorDesc { layers, ..inside })
 }
 
 /// `max_depth` as a limit on scatterings, and `rr_depth`.

@@ -189,6 +189,7 @@ impl<'t> Builder<'t> {
 }
 
 /// Mitsuba's `path`, which it takes if a scene names none.
-fn default_integrator(span: Span) -> IntegratorDesc {
-    IntegratorDesc { name: Spanned::new("path".into(), span), max_depth: None, rr_depth: None, hide_emitters: false }
+pub(super) fn default_integrator(span: Span) -> IntegratorDesc {
+    let name = Spanned::new("path".into(), span);
+    IntegratorDesc { name, max_depth: None, rr_depth: None, hide_emitters: false, layers: Vec::new() }
 }

@@ -67,6 +67,7 @@ impl Settings {
                 max_depth: None,
                 rr_depth: None,
                 hide_emitters: false,
+                layers: Vec::new(),
             }),
         }
     }
@@ -207,8 +208,8 @@ impl Reader {
         p.ignore("samplelights", "light sampling never changes the mean");
         p.ignore("samplebsdf", "how directions are sampled never changes the mean");
         self.finish_params(p);
-        let (rr_depth, hide_emitters) = (None, false);
+        let (rr_depth, hide_emitters, layers) = (None, false, Vec::new());
         self.settings.integrator =
-            Some(IntegratorDesc { name: name.map(Into::into), max_depth, rr_depth, hide_emitters });
+            Some(IntegratorDesc { name: name.map(Into::into), max_depth, rr_depth, hide_emitters, layers });
     }
 }

@@ -343,3 +343,30 @@ fn every_sensor_is_read_as_mitsuba_reads_it() {
     let CameraKind::Batch(cameras) = kind(batch).kind else { panic!() };
     assert_eq!(cameras.len(), 2);
 }
+
+/// Mitsuba's names of channels.
+#[test]
+fn layers_have_the_names_that_mitsuba_gives_them() {
+    let read = |list: &str| {
+        let aov = format!(
+            "<integrator type=\"aov\"><string name=\"aovs\" value=\"{list}\"/><integrator type=\"direct\"/></integrator>"
+        );
+        parse(&PathBuf::from("a.xml"), &scene(&aov), &[]).map(|(desc, _)| desc.integrator).map_err(|e| e.to_string())
+    };
+    let integrator = read("dd.y:depth, nn:sh_normal,i:shape_index").unwrap();
+    let names: Vec<_> = integrator.layers.iter().flat_map(|layer| layer.channels.clone()).collect();
+    assert_eq!(names, ["dd.y.T", "nn.X", "nn.Y", "nn.Z", "i.I"]);
+    assert_eq!((integrator.name.value.as_str(), integrator.max_depth.map(|d| d.value)), ("direct", Some(1)));
+    for (list, message) in [
+        ("dd", "\"dd\" is no layer"),
+        ("a:depth,a:uv", "a layer cannot be called \"a\""),
+        ("stderr:albedo", "a layer cannot be called \"stderr\""),
+        ("a:dept", "did you mean \"depth\"?"),
+        ("a:dp_dv", "are not known yet"),
+    ] {
+        let error = read(list).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+    let depth = parsed(&scene("<integrator type=\"depth\"/>"));
+    assert_eq!(depth.integrator.layers[0].channels, ["depth.T"]);
+}

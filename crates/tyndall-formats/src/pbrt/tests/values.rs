@@ -337,3 +337,12 @@ fn every_camera_is_read_as_pbrt_reads_it() {
     };
     assert_eq!([millimetre(""), millimetre("Option \"string unit\" \"cm\"")], [1e-3, 0.1]);
 }
+
+#[test]
+fn a_gbuffer_has_the_layers_of_pbrt() {
+    let film = scene(r#"Film "gbuffer" "string coordinatesystem" "world" WorldBegin"#).film;
+    let names: Vec<_> = film.layers.iter().flat_map(|layer| layer.channels.clone()).collect();
+    let wanted = ["Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"];
+    assert_eq!(names[..9], wanted);
+    assert_eq!(names[9..], ["Ns.X", "Ns.Y", "Ns.Z", "u", "v"]);
+}
