@@ -1,5 +1,7 @@
 //! Shapes, groups, instances, and the lights that shapes are.
 
+use std::collections::HashMap;
+
 use tyndall::{
     light::{AreaLight, EmitterShape, Light, LightId},
     math::{Vec2, Vec3},
@@ -20,6 +22,8 @@ pub(super) struct Shapes {
     pub(super) geometry: Geometry,
     pub(super) objects: Vec<Object>,
     pub(super) lights: Vec<Light>,
+    /// The surfaces of shapes that measure, by their index in the description.
+    pub(super) meters: HashMap<usize, Vec<EmitterShape>>,
 }
 
 /// Shapes in the making.
@@ -56,8 +60,14 @@ impl<'a> Builder<'a> {
     pub(super) fn shapes(&mut self) -> Option<Shapes> {
         let desc = self.desc;
         let mut gathered = Gathered::default();
-        for shape in &desc.shapes {
+        let metered = desc.camera.metered_shapes();
+        let mut objects = HashMap::new();
+        for (index, shape) in desc.shapes.iter().enumerate() {
+            let first = gathered.objects.len() as u32;
             self.shape(&mut gathered, shape);
+            if metered.contains(&index) {
+                objects.insert(index, first..gathered.objects.len() as u32);
+            }
         }
         let groups: Vec<GroupId> = desc.groups.iter().map(|g| self.group(&mut gathered, g)).collect();
         for instance in &desc.instances {
@@ -76,7 +86,19 @@ impl<'a> Builder<'a> {
             let emission = self.emitters(&geometry, object, emission, opacity, &mut lights)?;
             gathered.objects[object.0 as usize].emission = emission;
         }
-        Some(Shapes { geometry, objects: gathered.objects, lights })
+        let mut meters = HashMap::new();
+        for (index, objects) in objects {
+            let pieces: Result<Vec<_>, _> = objects.map(|object| pieces(&geometry, ObjectId(object))).collect();
+            match pieces {
+                Ok(pieces) => meters.insert(index, pieces.into_iter().flat_map(Pieces::into_shapes).collect()),
+                Err(what) => {
+                    let message = format!("a meter on {what} is not known yet");
+                    let error = SceneError::not_yet(desc.shapes[index].span, message);
+                    return self.fail(error.help("use a mesh of triangles"));
+                }
+            };
+        }
+        Some(Shapes { geometry, objects: gathered.objects, lights, meters })
     }
 
     fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> GroupId {
@@ -220,31 +242,13 @@ impl<'a> Builder<'a> {
             let radiance = radiance.clone();
             lights.push(Light::Area(AreaLight { shape, radiance, luminance, opacity, two_sided: desc.two_sided }));
         };
-        match geometry.shape(object) {
-            Shape::Sphere(sphere) => match sphere.round() {
-                Some((centre, radius)) => shine(EmitterShape::Sphere { centre, radius, inward: sphere.reversed }),
-                None => return self.cannot_shine(desc, "an ellipsoid"),
-            },
-            Shape::Disk(disk) => match disk.radius() {
-                Some(radius) => shine(EmitterShape::Disk {
-                    centre: disk.centre,
-                    ng: disk.normal(),
-                    radius,
-                    inner: disk.inner * radius,
-                }),
-                None => return self.cannot_shine(desc, "an elliptic disk"),
-            },
-            Shape::Patch(_) => return self.cannot_shine(desc, "a curved bilinear patch"),
-            Shape::Mesh(mesh) => {
-                if let Some(parallelogram) = as_parallelogram(mesh) {
-                    shine(parallelogram);
-                    return Some(Emission::Whole(first));
-                }
-                for prim in 0..mesh.indices.len() as u32 {
-                    shine(triangle(mesh.triangle(prim), mesh.reversed));
-                }
+        match pieces(geometry, object) {
+            Ok(Pieces::Whole(shape)) => shine(shape),
+            Ok(Pieces::Each(shapes)) => {
+                shapes.into_iter().for_each(shine);
                 return Some(Emission::EachPrimitive(first));
             }
+            Err(what) => return self.cannot_shine(desc, what),
         }
         Some(Emission::Whole(first))
     }
@@ -254,6 +258,45 @@ impl<'a> Builder<'a> {
             SceneError::at(desc.span, format!("light from {what} is not known yet")).help("use a mesh of triangles"),
         )
     }
+}
+
+/// The surface of an object, as it can be sampled.
+enum Pieces {
+    /// All of it at once.
+    Whole(EmitterShape),
+    /// A piece for each primitive.
+    Each(Vec<EmitterShape>),
+}
+
+impl Pieces {
+    fn into_shapes(self) -> Vec<EmitterShape> {
+        match self {
+            Self::Whole(shape) => vec![shape],
+            Self::Each(shapes) => shapes,
+        }
+    }
+}
+
+/// The surface of an object; or what it is, if it cannot be sampled.
+fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str> {
+    Ok(Pieces::Whole(match geometry.shape(object) {
+        Shape::Sphere(sphere) => {
+            let (centre, radius) = sphere.round().ok_or("an ellipsoid")?;
+            EmitterShape::Sphere { centre, radius, inward: sphere.reversed }
+        }
+        Shape::Disk(disk) => {
+            let radius = disk.radius().ok_or("an elliptic disk")?;
+            EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
+        }
+        Shape::Patch(_) => return Err("a curved bilinear patch"),
+        Shape::Mesh(mesh) => match as_parallelogram(mesh) {
+            Some(parallelogram) => parallelogram,
+            None => {
+                let prims = 0..mesh.indices.len() as u32;
+                return Ok(Pieces::Each(prims.map(|prim| triangle(mesh.triangle(prim), mesh.reversed)).collect()));
+            }
+        },
+    }))
 }
 
 fn triangle([a, b, c]: [Vec3; 3], reversed: bool) -> EmitterShape {

@@ -38,6 +38,9 @@ impl<'t> Builder<'t> {
         let mut object = self.object(element);
         let emitter = object.only("emitter", &mut self.report);
         let emission = emitter.and_then(|emitter| self.area_light(emitter.element));
+        if let Some(sensor) = object.only("sensor", &mut self.report) {
+            self.meters.push((sensor.element, self.shapes.len()));
+        }
         let bsdf = object.only("bsdf", &mut self.report);
         let material = bsdf.and_then(|bsdf| Some(Spanned::new(self.material(bsdf.element, false)?, bsdf.at.span)));
         let material =
@@ -150,7 +153,12 @@ impl<'t> Builder<'t> {
                 self.report.errors.push(SceneError::at(child.at.span, message));
                 continue;
             }
+            let meters = self.meters.len();
             let shape = self.shape(plugin, child.element);
+            for (sensor, _) in self.meters.split_off(meters) {
+                let message = "a shape that measures cannot be part of a \"shapegroup\"";
+                self.report.errors.push(SceneError::at(sensor.span, message));
+            }
             if let Some(emission) = shape.as_ref().and_then(|shape| shape.emission.as_ref()) {
                 let error = SceneError::at(emission.span, "a shape that shines cannot be part of a \"shapegroup\"");
                 self.report.errors.push(error.help("place it in the scene itself"));

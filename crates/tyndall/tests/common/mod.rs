@@ -3,7 +3,7 @@
 
 use tyndall::{
     bsdf::Sides,
-    camera::Camera,
+    camera::{Camera, CameraModel, Perspective, View},
     film::Filter,
     integrator::Integrator,
     light::{AreaLight, ConstantEnvironment, EmitterShape, EnvironmentMap, Light, LightId, LightTable, Projection},
@@ -76,13 +76,16 @@ impl World {
             eye.as_dvec3().extend(1.0),
         );
         let camera = Camera {
-            to_world: Transform::new(to_world).unwrap(),
-            window: [-1e-4, 1e-4, -1e-4, 1e-4],
+            view: View {
+                to_world: Transform::new(to_world).unwrap(),
+                model: CameraModel::Perspective(Perspective::pinhole([-1e-4, 1e-4, -1e-4, 1e-4])),
+            },
             width: 1,
             height: 1,
             filter: Filter::default(),
             exposure: 1.0,
             medium: None,
+            layers: Vec::new(),
         };
         Self {
             color: ColorMode::Rgb,
