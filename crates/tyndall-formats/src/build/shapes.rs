@@ -153,6 +153,7 @@ impl<'a> Builder<'a> {
                 outside: i.outside.map(medium_id),
             }),
             emission: Emission::None,
+            body: None,
         });
         gathered.emitters.extend(desc.emission.as_ref().map(|e| (object, e)));
         Some(())

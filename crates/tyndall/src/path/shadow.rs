@@ -4,7 +4,7 @@ use crate::{
     light::Target,
     material::Material,
     math::{Ray, Vec3, rounding::gamma},
-    medium::Inside,
+    medium::{Inside, Skin, Within},
     scene::Scene,
     shape::offset_point,
     spectrum::{Lanes, Wavelengths},
@@ -13,6 +13,7 @@ use crate::{
 
 /// The transmittance from `origin` to a light, or `None` when a surface stands between.
 ///
+/// `medium` and `within` are those that the ray starts in; `hero` is the lane that says whether two indices are the same.
 /// `origin` must have been moved off the surface it lies on; the light's end is moved off here.
 #[inline]
 pub fn transmittance(
@@ -20,8 +21,8 @@ pub fn transmittance(
     origin: Vec3,
     dir: Vec3,
     target: &Target,
-    mut inside: Inside,
-    wavelengths: &Wavelengths,
+    (mut inside, within): (Inside, &Within),
+    (wavelengths, hero): (&Wavelengths, usize),
     tally: &mut Tally,
 ) -> Option<Lanes> {
     let (mut ray, mut t_max) = segment(origin, dir, target);
@@ -33,6 +34,7 @@ pub fn transmittance(
         return Some(inside.coefficients().map_or(Lanes::ONE, |c| c.transmittance(t_max)));
     }
     let mut transmittance = Lanes::ONE;
+    let mut within = *within;
     loop {
         tally.shadow_rays += 1;
         let hit = scene.geometry.intersect(&ray, t_max);
@@ -44,13 +46,22 @@ pub fn transmittance(
             }
         }
         let Some(hit) = hit else { return Some(transmittance) };
-        let surface = scene.geometry.interaction(&ray, &hit);
-        let object = scene.object(&surface);
-        if !matches!(scene.materials[object.material.0 as usize], Material::Null) {
-            return None;
-        }
-        if let Some(interface) = object.interface {
-            inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
+        let mut surface = scene.geometry.interaction(&ray, &hit);
+        if scene.has_bodies() {
+            let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, wavelengths, hero, tally);
+            if blocks(skin, scene.material(&surface)) {
+                return None;
+            }
+            within = beyond;
+            inside = within.inside(scene, wavelengths);
+        } else {
+            let object = scene.object(&surface);
+            if blocks(Skin::Written, &scene.materials[object.material.0 as usize]) {
+                return None;
+            }
+            if let Some(interface) = object.interface {
+                inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
+            }
         }
         let next = surface.spawn(ray.dir).origin;
         (ray, t_max) = segment(next, dir, target);
@@ -60,16 +71,37 @@ pub fn transmittance(
     }
 }
 
+/// Whether a surface stops light that goes straight.
+#[inline]
+fn blocks(skin: Skin, material: &Material) -> bool {
+    match skin {
+        Skin::Open => false,
+        Skin::Between { .. } => true,
+        Skin::Written => !matches!(material, Material::Null),
+    }
+}
+
 /// Whether no surface with a material stands between `origin` and a light, media left out of account.
-pub fn visible(scene: &Scene, origin: Vec3, dir: Vec3, target: &Target, tally: &mut Tally) -> bool {
+pub fn visible(
+    scene: &Scene,
+    origin: Vec3,
+    dir: Vec3,
+    target: &Target,
+    within: &Within,
+    (wavelengths, hero): (&Wavelengths, usize),
+    tally: &mut Tally,
+) -> bool {
     let (mut ray, mut t_max) = segment(origin, dir, target);
+    let mut within = *within;
     loop {
         tally.shadow_rays += 1;
         let Some(hit) = scene.geometry.intersect(&ray, t_max) else { return true };
-        let surface = scene.geometry.interaction(&ray, &hit);
-        if !matches!(scene.material(&surface), Material::Null) {
+        let mut surface = scene.geometry.interaction(&ray, &hit);
+        let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, wavelengths, hero, tally);
+        if blocks(skin, scene.material(&surface)) {
             return false;
         }
+        within = beyond;
         (ray, t_max) = segment(surface.spawn(ray.dir).origin, dir, target);
         if t_max <= 0.0 {
             return true;
