@@ -27,10 +27,12 @@ impl Reader {
             _ => ply(&mut p),
         };
         p.later_unless("alpha", 1.0);
+        // tyndall's own.
+        let priority = p.integer_opt("priority");
         self.finish_params(p);
         if let Some(kind) = kind {
             let shape = self.bound(&s, kind);
-            self.place(shape);
+            self.place(ShapeDesc { priority, ..shape });
         }
     }
 
@@ -53,6 +55,7 @@ impl Reader {
             material,
             emission: now.area_light.as_deref().cloned(),
             interface: now.interface,
+            priority: None,
         }
     }
 

@@ -188,7 +188,12 @@ impl Within {
     }
 
     /// The medium here, with its coefficients.
+    #[inline]
     pub fn inside(&self, scene: &Scene, wavelengths: &Wavelengths) -> Inside {
+        if self.len == 0 { Inside::of(scene, self.around, wavelengths) } else { self.inside_bodies(scene, wavelengths) }
+    }
+
+    fn inside_bodies(&self, scene: &Scene, wavelengths: &Wavelengths) -> Inside {
         let mut media = self.media(scene);
         let Some(first) = media.next() else { return Inside::Vacuum };
         let mut rest = media.peekable();
