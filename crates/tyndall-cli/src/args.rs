@@ -5,7 +5,7 @@ use std::{path::PathBuf, time::Duration};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use tyndall::film::Crop;
 
-use crate::values;
+use crate::{commands::lab::options::Instrument, values};
 
 /// A renderer for light that scatters many times: milk, marble, skin, fog.
 #[derive(Debug, Parser)]
@@ -26,6 +26,11 @@ pub(crate) enum Command {
     Lecture(LectureOptions),
     /// Tell what is in a scene, without rendering it
     Info(InfoOptions),
+    /// Measure with a virtual instrument: plane layers, a point source, a ball, a random walk
+    #[command(subcommand)]
+    Lab(Box<Instrument>),
+    /// Measure published numbers, and say whether the program reproduces them
+    Verify(VerifyOptions),
 }
 
 /// Renders a scene to an image with its standard error.
@@ -189,6 +194,49 @@ pub(crate) struct LectureOptions {
 pub(crate) struct InfoOptions {
     #[command(flatten)]
     pub(crate) input: SceneOptions,
+}
+
+/// Measures published numbers, and says whether the program reproduces them.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tyndall verify                      a part of every table, under a minute
+  tyndall verify --full               every figure, to a standard error of 0.1 % of the light or better
+  tyndall verify --filter slabs       one table
+  tyndall verify --list               the tables, what they hold and who made them
+  tyndall verify --json report.json   every figure with expectation, standard error and z
+
+A figure is measured with its standard error, and z is its deviation from the table in such errors. The verdict is over
+all figures of all tables together: the greatest |z|, the χ² and the mean shift of every table, corrected for their
+number. Exit status: 0 reproduced, 1 not reproduced, 2 failed.")]
+pub(crate) struct VerifyOptions {
+    /// Every figure, instead of a part of them
+    #[arg(long)]
+    pub(crate) full: bool,
+    /// A part of the figures in under a minute; this is the default
+    #[arg(long, conflicts_with = "full")]
+    pub(crate) quick: bool,
+    /// Only tables whose names contain this
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
+    pub(crate) filter: String,
+    /// List the tables
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Show every figure, not only those that are far off
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Write all figures as JSON to a file, or to standard output with -
+    #[arg(long, value_name = "FILE|-")]
+    pub(crate) json: Option<PathBuf>,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Chance of calling a program wrong that is right
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = values::probability)]
+    pub(crate) alpha: f64,
+    /// Threads [default: one for each core]; the figures do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
 }
 
 /// Estimators by the names of the command line.

@@ -33,6 +33,8 @@ fn main() -> ExitCode {
         Command::Compare(options) => commands::compare::run(&options),
         Command::Lecture(options) => commands::lecture::run(&options),
         Command::Info(options) => commands::info::run(&options),
+        Command::Lab(instrument) => commands::lab::run(&instrument),
+        Command::Verify(options) => commands::verify::run(&options),
     };
     outcome.unwrap_or_else(|error| {
         show(&error);

@@ -43,7 +43,7 @@ fn ball(albedo: f32) -> Result<Scene, Box<dyn std::error::Error>> {
     let (to_world, filter) = (Transform::IDENTITY, Filter::default());
     let camera = Camera { to_world, window, width: 1, height: 1, filter, exposure: 1.0, medium: None };
     let sky = Light::Constant(ConstantEnvironment { radiance: Spectrum::illuminant_rgb([1.0; 3]), luminance: 1.0 });
-    let lights = LightTable::new(vec![sky], Vec3::ZERO);
+    let lights = LightTable::new(vec![sky]);
     Ok(Scene::new(ColorMode::Rgb, camera, builder.build()?, vec![object], vec![Material::Null], vec![medium], lights))
 }
 

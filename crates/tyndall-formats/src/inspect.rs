@@ -14,6 +14,7 @@ use std::collections::HashSet;
 use tyndall::scene::Scene;
 use tyndall::shape::{ObjectId, Seams};
 
+use crate::build::made::parts;
 use crate::desc::{Coefficients, LightKind, MaterialKind, MediumId, SceneDesc, ShapeDesc, ShapeKind};
 use crate::error::SceneError;
 
@@ -37,7 +38,9 @@ fn shapes(desc: &SceneDesc) -> impl Iterator<Item = &ShapeDesc> {
 
 /// Named materials, media and groups that nothing refers to.
 fn unused(desc: &SceneDesc, warnings: &mut Vec<SceneError>) {
-    let materials: HashSet<_> = shapes(desc).map(|shape| shape.material.value.0).collect();
+    let made_of = desc.materials.iter().flat_map(|material| parts(&material.kind));
+    let materials = shapes(desc).map(|shape| shape.material.value.0).chain(made_of.map(|part| part.value.0));
+    let materials: HashSet<_> = materials.collect();
     let interfaces = shapes(desc).filter_map(|shape| shape.interface).flat_map(|i| [i.inside, i.outside]);
     let lights = desc.lights.iter().map(|light| light.medium.map(|m| m.value));
     let camera = desc.camera.medium.map(|m| m.value);

@@ -23,5 +23,6 @@ pub mod sampling;
 pub mod scene;
 pub mod shape;
 pub mod spectrum;
+mod surface;
 pub mod tally;
 pub mod texture;

@@ -5,11 +5,12 @@ use crate::{
         Bsdf, Sides,
         microfacet::{Distribution, Shadowing},
     },
+    scene::MaterialId,
     spectrum::{Lanes, Sampled, Wavelengths, glass::Glass},
     texture::{Texture, TexturePoint},
 };
 
-/// A surface's material.
+/// A surface's material. Some are made of others: [`crate::scene::Scene::meet`] finds which of them a path meets.
 #[derive(Debug, Clone)]
 pub enum Material {
     /// Lambertian.
@@ -61,6 +62,22 @@ pub enum Material {
     },
     /// No material: light passes, and may enter another medium.
     Null,
+    /// No surface either: light passes and stays in its medium, and nothing shines (pbrt's `alpha`).
+    Hole,
+    /// One material or the other, by chance at every meeting.
+    Mix {
+        /// Other materials of the scene; none may contain this one.
+        of: [MaterialId; 2],
+        /// The share of the second, 0 to 1 [1].
+        amount: Texture,
+    },
+    /// Another material on each face.
+    TwoFaced {
+        /// On the side of the normal; it does not contain this one.
+        outside: MaterialId,
+        /// On the other side.
+        inside: MaterialId,
+    },
 }
 
 /// The microfacets of a rough surface.
@@ -159,7 +176,8 @@ impl Material {
                 let scaled = |s: &Texture| s.eval(at, wavelengths).map(|v| (v * scale).clamp(0.0, 1.0));
                 Bsdf::diffuse_transmission(scaled(reflectance), scaled(transmittance))
             }
-            Self::Null => Bsdf::Null,
+            // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
+            Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } => Bsdf::Null,
         }
     }
 

@@ -8,6 +8,7 @@ use crate::{
     medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
     shape::{Geometry, Hit, Interaction},
     spectrum::ColorMode,
+    surface::may_be_open,
 };
 
 /// Index of a material of the scene.
@@ -89,10 +90,10 @@ impl Scene {
         lights: LightTable,
     ) -> Self {
         let bodies = Body::gather(&mut objects, &materials, &geometry);
-        let is_null = |o: &Object| matches!(materials[o.material.0 as usize], Material::Null);
+        let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], &materials);
         let facts = Facts {
             // A surface of a body may not be there.
-            has_null_surfaces: objects.iter().any(is_null) || !bodies.is_empty(),
+            has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
             lit: (0..media.len())
                 .map(|i| MediumId(i as u32))
                 .map(|m| opens_straight(m, &bodies) || can_be_lit(m, &geometry, &objects, &materials, &lights))
@@ -188,7 +189,7 @@ impl Scene {
     }
 }
 
-/// A medium is lit directly if it has an open boundary (one without a material), if it fills the space of a light, or
+/// A medium is lit directly if it has an open boundary (one without a material, or with holes), if it fills the space of a light, or
 /// if it has no boundary that we know of.
 fn can_be_lit(
     medium: MediumId,
@@ -198,13 +199,13 @@ fn can_be_lit(
     lights: &LightTable,
 ) -> bool {
     let touches = |o: &Object| o.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium));
-    let is_null = |o: &Object| matches!(materials[o.material.0 as usize], Material::Null);
+    let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], materials);
     let mut body = Bounds::EMPTY;
     for (index, object) in objects.iter().enumerate() {
         // On the outside of a body the medium reaches as far as its other boundaries, which may be nowhere.
         let surrounds = object.interface.is_some_and(|i| i.outside == Some(medium));
         let placed = geometry.is_in_group(crate::shape::ObjectId(index as u32));
-        if touches(object) && (is_null(object) || surrounds || placed) {
+        if touches(object) && (is_open(object) || surrounds || placed) {
             return true;
         }
         if touches(object) {

@@ -2,5 +2,7 @@
 
 pub(crate) mod compare;
 pub(crate) mod info;
+pub(crate) mod lab;
 pub(crate) mod lecture;
 pub(crate) mod render;
+pub(crate) mod verify;

@@ -10,18 +10,44 @@ use tyndall::{
     texture::Texture,
 };
 
-use super::{Builder, spectra::Measure};
+use super::{Builder, made::parts, material_id, spectra::Measure};
 use crate::{
     desc::{
-        ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind, SpectrumDesc,
-        Varying,
+        ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
+        SpectrumDesc, Varying,
     },
     error::SceneError,
     source::Spanned,
 };
 
+/// The most materials that one can be made of, counted as often as they are part of it.
+const MAX_PARTS: u32 = 1024;
+
+/// The deepest nesting of materials in materials.
+const MAX_DEPTH: u32 = 64;
+
 impl Builder<'_> {
-    pub(super) fn material(&mut self, desc: &MaterialDesc) -> Option<Material> {
+    /// All materials of the file, unless one of them contains itself, or too many others.
+    pub(super) fn materials(&mut self) -> Option<Vec<Material>> {
+        for desc in &self.desc.materials {
+            if self.has_too_many_parts(desc, 0, &mut 0) {
+                let message = format!("this material contains itself, or more than {MAX_PARTS} others");
+                return self.fail(SceneError::at(desc.span, message));
+            }
+        }
+        let materials: Vec<_> = self.desc.materials.iter().map(|m| self.material(m)).collect();
+        materials.into_iter().collect()
+    }
+
+    fn has_too_many_parts(&self, desc: &MaterialDesc, depth: u32, count: &mut u32) -> bool {
+        *count += 1;
+        let part = |id: &Spanned<MaterialId>| self.desc.material(id.value);
+        depth > MAX_DEPTH
+            || *count > MAX_PARTS
+            || parts(&desc.kind).iter().filter_map(part).any(|part| self.has_too_many_parts(part, depth + 1, count))
+    }
+
+    fn material(&mut self, desc: &MaterialDesc) -> Option<Material> {
         let sides = if desc.two_sided { Sides::Both } else { Sides::Outside };
         match &desc.kind {
             MaterialKind::Diffuse { reflectance } => {
@@ -56,6 +82,17 @@ impl Builder<'_> {
                 })
             }
             MaterialKind::Interface => Some(Material::Null),
+            MaterialKind::Mix { of, amount } => Some(Material::Mix {
+                of: [material_id(of[0].value), material_id(of[1].value)],
+                amount: self.texture(amount, Measure::Share)?,
+            }),
+            MaterialKind::Mask { of, opacity } => Some(Material::Mix {
+                of: [self.made.null(), material_id(of.value)],
+                amount: self.texture(opacity, Measure::Share)?,
+            }),
+            MaterialKind::TwoFaced { of: [outside, inside] } => {
+                Some(Material::TwoFaced { outside: material_id(outside.value), inside: material_id(inside.value) })
+            }
         }
     }
 

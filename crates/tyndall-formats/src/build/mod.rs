@@ -1,6 +1,7 @@
 //! From what the user wrote to what is rendered: reads meshes and images, converts units, checks the physics.
 
 mod lights;
+pub(crate) mod made;
 mod materials;
 mod media;
 mod shapes;
@@ -28,6 +29,7 @@ use crate::{
     error::{Diagnostics, ErrorList, SceneError},
     source::{SourceMap, Span},
 };
+use made::Made;
 use spectra::Measure;
 use textures::Pictures;
 
@@ -51,27 +53,33 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    made: Made,
 }
 
 impl<'a> Builder<'a> {
     fn new(desc: &'a SceneDesc, errors: &'a mut ErrorList) -> Self {
-        Self { desc, errors, textures: HashMap::new(), pictures: Pictures::new() }
+        Self {
+            desc,
+            errors,
+            textures: HashMap::new(),
+            pictures: Pictures::new(),
+            made: Made::new(desc.materials.len()),
+        }
     }
 }
 
 impl Builder<'_> {
     fn scene(&mut self, color: ColorMode) -> Option<Scene> {
-        let materials = self.desc.materials.iter().map(|m| self.material(m)).collect::<Vec<_>>();
+        let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
         let shapes = self.shapes();
         let lights = self.lights();
         let camera = self.camera(&self.desc.camera, &self.desc.film);
-        let materials = materials.into_iter().collect::<Option<Vec<_>>>()?;
+        let mut materials = materials?;
+        materials.extend(self.made.take());
         let media = media.into_iter().collect::<Option<Vec<_>>>()?;
         let (shapes, lights, camera) = (shapes?, lights?, camera?);
-        let middle = shapes.geometry.bounds().centre();
-        let middle = if middle.is_finite() { middle } else { glam::Vec3::ZERO };
-        let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect(), middle);
+        let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect());
         Some(Scene::new(color, camera, shapes.geometry, shapes.objects, materials, media, table))
     }
 

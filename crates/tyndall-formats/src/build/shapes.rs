@@ -27,8 +27,8 @@ pub(super) struct Shapes {
 struct Gathered<'a> {
     builder: GeometryBuilder,
     objects: Vec<Object>,
-    /// Objects that shine, and what of them.
-    emitters: Vec<(ObjectId, &'a AreaLightDesc)>,
+    /// Objects that shine, with what, and how much of them is there.
+    emitters: Vec<(ObjectId, &'a AreaLightDesc, f32)>,
 }
 
 /// The normals of a mesh from a file.
@@ -72,8 +72,9 @@ impl<'a> Builder<'a> {
             Err(e) => return self.fail(SceneError::new(e.to_string())),
         };
         let mut lights = Vec::new();
-        for (object, emission) in gathered.emitters {
-            gathered.objects[object.0 as usize].emission = self.emitters(&geometry, object, emission, &mut lights)?;
+        for (object, emission, opacity) in gathered.emitters {
+            let emission = self.emitters(&geometry, object, emission, opacity, &mut lights)?;
+            gathered.objects[object.0 as usize].emission = emission;
         }
         Some(Shapes { geometry, objects: gathered.objects, lights })
     }
@@ -147,6 +148,13 @@ impl<'a> Builder<'a> {
                     .related(desc.material.span, "its material"),
             );
         }
+        if let Some(opacity) = &desc.opacity {
+            return self.fail(
+                SceneError::at(priority.span, "a body with a priority has no holes")
+                    .help("leave out the priority, or the opacity")
+                    .related(opacity.span, "its opacity"),
+            );
+        }
         if let Some(light) = &desc.emission {
             return self.fail(
                 SceneError::at(priority.span, "the surface of a body with a priority cannot shine")
@@ -176,9 +184,13 @@ impl<'a> Builder<'a> {
             Ok(object) => object,
             Err(e) => return self.fail(SceneError::at(desc.span, e.to_string())),
         };
+        let material = match &desc.opacity {
+            None => material_id(desc.material.value),
+            Some(opacity) => self.pierced(desc.material.value, opacity)?,
+        };
         gathered.objects.push(Object {
             name: desc.name.clone().unwrap_or_default(),
-            material: material_id(desc.material.value),
+            material,
             interface: desc.interface.map(|i| medium::MediumInterface {
                 inside: i.inside.map(medium_id),
                 outside: i.outside.map(medium_id),
@@ -186,7 +198,19 @@ impl<'a> Builder<'a> {
             emission: Emission::None,
             body,
         });
-        gathered.emitters.extend(desc.emission.as_ref().map(|e| (object, e)));
+        if let Some(emission) = &desc.emission {
+            let opacity = match desc.opacity.as_ref().map(|opacity| (opacity.value.number(), opacity.span)) {
+                None => 1.0,
+                Some((Some(opacity), _)) => opacity as f32,
+                Some((None, span)) => {
+                    return self.fail(
+                        SceneError::not_yet(span, "a texture for the alpha of a shape that shines is not known yet")
+                            .help("give a number"),
+                    );
+                }
+            };
+            gathered.emitters.push((object, emission, opacity));
+        }
         Some(())
     }
 
@@ -222,6 +246,7 @@ impl<'a> Builder<'a> {
         geometry: &Geometry,
         object: ObjectId,
         desc: &AreaLightDesc,
+        opacity: f32,
         lights: &mut Vec<Light>,
     ) -> Option<Emission> {
         let radiance = self.emission(&desc.radiance)?;
@@ -232,7 +257,7 @@ impl<'a> Builder<'a> {
         let first = LightId(lights.len() as u32);
         let mut shine = |shape: EmitterShape| {
             let radiance = radiance.clone();
-            lights.push(Light::Area(AreaLight { shape, radiance, luminance, two_sided: desc.two_sided }));
+            lights.push(Light::Area(AreaLight { shape, radiance, luminance, opacity, two_sided: desc.two_sided }));
         };
         match geometry.shape(object) {
             Shape::Sphere(sphere) => match sphere.round() {

@@ -1,6 +1,6 @@
 //! What surfaces are made of.
 
-use super::{Span, Spanned, SpectrumDesc, Varying};
+use super::{MaterialId, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +64,25 @@ pub enum MaterialKind {
     },
     /// No surface at all: a boundary of media that light passes unchanged.
     Interface,
+    /// Two materials mixed.
+    Mix {
+        /// They; not this one again.
+        of: [Spanned<MaterialId>; 2],
+        /// How much of the second, in [0, 1].
+        amount: Spanned<Varying>,
+    },
+    /// A material with holes: an [`Self::Interface`] where it is not there (Mitsuba).
+    Mask {
+        /// What there is.
+        of: Spanned<MaterialId>,
+        /// How much of it, in [0, 1].
+        opacity: Spanned<Varying>,
+    },
+    /// Another material on each face (Mitsuba).
+    TwoFaced {
+        /// On the side of the normal, and on the other one.
+        of: [Spanned<MaterialId>; 2],
+    },
 }
 
 /// How a metal reflects.

@@ -2,7 +2,7 @@
 
 use glam::DMat4;
 
-use super::{AreaLightDesc, FileRef, GroupId, MaterialId, MediumInterface, Span, Spanned};
+use super::{AreaLightDesc, FileRef, GroupId, MaterialId, MediumInterface, Span, Spanned, Varying};
 
 /// A shape with everything that was bound to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,8 @@ pub struct ShapeDesc {
     pub reverse_orientation: bool,
     /// What the surface is made of.
     pub material: Spanned<MaterialId>,
+    /// How much of the surface is there, in [0, 1], if not all of it; the rest are holes that nothing meets (pbrt).
+    pub opacity: Option<Spanned<Varying>>,
     /// Light that it emits.
     pub emission: Option<AreaLightDesc>,
     /// What is on either side of it, if the user says.

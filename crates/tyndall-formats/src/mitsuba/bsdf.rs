@@ -1,14 +1,15 @@
-//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `null`, and `twosided` around one that
-//! reflects.
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `null`; `blendbsdf`, `mask`, and
+//! `twosided` around one that reflects or two.
 
 use tyndall_optics::spectra;
 
-use super::object::{Measure, Object, Report};
+use super::object::{Child, Measure, Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
-    ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind, SpectrumDesc, Varying,
+    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
+    SpectrumDesc, Varying,
 };
 use crate::error::SceneError;
 use crate::source::Spanned;
@@ -41,38 +42,79 @@ const INDICES: &[(&str, f64)] = &[
 ];
 
 impl<'t> Builder<'t> {
-    pub(super) fn bsdf(&mut self, element: &'t Element) -> Option<MaterialDesc> {
+    /// A material; `two_sided` where a `twosided` is around it.
+    pub(super) fn bsdf(&mut self, element: &'t Element, two_sided: bool) -> Option<MaterialDesc> {
         let plugin = words::plugin(element, &mut self.report)?;
         let name = element.attribute("id").map(|id| id.value.clone());
+        let desc = |kind| MaterialDesc { span: element.span, name: name.clone(), kind, two_sided };
         if plugin != "twosided" {
-            let kind = self.bsdf_kind(plugin, element)?;
-            return Some(MaterialDesc { span: element.span, name, kind, two_sided: false });
+            return self.bsdf_kind(plugin, element, two_sided).map(desc);
         }
         let mut object = self.object(element);
-        let inside = object.nested("bsdf");
+        let faces = object.nested("bsdf");
         object.finish(&mut self.report);
-        let error = match inside[..] {
-            [front] => match words::plugin(front.element, &mut self.report)? {
-                plugin @ ("diffuse" | "conductor" | "roughconductor") => {
-                    let kind = self.bsdf_kind(plugin, front.element)?;
-                    return Some(MaterialDesc { span: element.span, name, kind, two_sided: true });
-                }
-                plugin => {
-                    let what =
-                        if plugin == "twosided" { "two-sided already" } else { "not a surface that only reflects" };
-                    SceneError::at(front.element.span_of("type"), format!("\"{plugin}\" is {what}"))
-                        .help("leave the \"twosided\" out")
-                }
-            },
+        let error = match faces[..] {
+            [face] => {
+                self.reflects_only(&face)?;
+                let inside = self.bsdf(face.element, true)?;
+                return Some(MaterialDesc { span: element.span, name, ..inside });
+            }
+            [front, back] => {
+                let (front, back) = (self.face(&front), self.face(&back));
+                return Some(desc(MaterialKind::TwoFaced { of: [front?, back?] }));
+            }
             [] => SceneError::at(element.span, "\"twosided\" has no <bsdf> inside"),
-            _ => SceneError::not_yet(inside[1].at.span, "two materials in one \"twosided\" are not known yet"),
+            _ => SceneError::at(faces[2].at.span, "\"twosided\" has two faces, not three"),
         };
         self.report.errors.push(error);
         None
     }
 
+    /// One of two faces.
+    fn face(&mut self, child: &Child<'t>) -> Option<Spanned<MaterialId>> {
+        self.reflects_only(child)?;
+        self.part(child, true)
+    }
+
+    /// A material inside of another.
+    fn part(&mut self, child: &Child<'t>, two_sided: bool) -> Option<Spanned<MaterialId>> {
+        Some(Spanned::new(self.material(child.element, two_sided)?, child.at.span))
+    }
+
+    /// What `twosided` is around must not let light through.
+    fn reflects_only(&mut self, child: &Child<'t>) -> Option<()> {
+        let plugin = words::plugin(child.element, &mut self.report)?;
+        let what = match plugin {
+            "twosided" => "two-sided already",
+            "dielectric" | "roughdielectric" | "thindielectric" | "null" | "mask" => "not a surface that only reflects",
+            _ => return Some(()),
+        };
+        let error = SceneError::at(child.element.span_of("type"), format!("\"{plugin}\" is {what}"));
+        self.report.errors.push(error.help("leave the \"twosided\" out"));
+        None
+    }
+
+    /// The two materials of a `blendbsdf`, or the one of a `mask`, with the share of it or of the second.
+    fn compound<const N: usize>(
+        &mut self,
+        object: &mut Object<'t>,
+        share: &'static str,
+        two_sided: bool,
+    ) -> Option<([Spanned<MaterialId>; N], Spanned<Varying>)> {
+        let parts = object.nested("bsdf");
+        let wrong = parts.len() != N;
+        if wrong {
+            let message = format!("\"{}\" is made of {N} <bsdf>, not of {}", object.kind(), parts.len());
+            self.report.errors.push(SceneError::at(object.element.span, message));
+        }
+        let share = self.varying_or(object, share, Measure::Part, 0.5);
+        let parts: Vec<_> = parts.iter().map(|part| self.part(part, two_sided)).collect();
+        let parts: Vec<_> = parts.into_iter().collect::<Option<_>>()?;
+        Some((parts.try_into().ok()?, share))
+    }
+
     /// Any plugin but `twosided`.
-    fn bsdf_kind(&mut self, plugin: &str, element: &'t Element) -> Option<MaterialKind> {
+    fn bsdf_kind(&mut self, plugin: &str, element: &'t Element, two_sided: bool) -> Option<MaterialKind> {
         let mut object = self.object(element);
         let kind = match plugin {
             "diffuse" => {
@@ -94,6 +136,18 @@ impl<'t> Builder<'t> {
                 roughness: self.roughness(plugin == "roughconductor", &mut object),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
+            "blendbsdf" => {
+                if !object.has("weight") {
+                    let error = SceneError::at(element.span, "\"blendbsdf\" lacks a \"weight\"");
+                    self.report.errors.push(error.help("0 is the first material alone, 1 the second"));
+                }
+                let (of, amount) = self.compound(&mut object, "weight", two_sided)?;
+                MaterialKind::Mix { of, amount }
+            }
+            "mask" => {
+                let ([of], opacity) = self.compound(&mut object, "opacity", two_sided)?;
+                MaterialKind::Mask { of, opacity }
+            }
             _ => MaterialKind::Interface,
         };
         object.finish(&mut self.report);

@@ -12,13 +12,18 @@ use crate::desc::{
 use crate::error::{ErrorList, SceneError};
 use crate::source::{SourceMap, Span, Spanned};
 
+/// The deepest nesting of materials in materials.
+const MAX_DEPTH: usize = 32;
+
 /// The scene as far as it is built.
 pub(super) struct Builder<'t> {
     ids: Ids<'t>,
     files: Files<'t>,
     pub(super) report: Report,
     /// Parts that are built, or were found wrong, by the element that says them.
-    built_materials: HashMap<Span, Option<MaterialId>>,
+    built_materials: HashMap<(Span, bool), Option<MaterialId>>,
+    /// The materials that are being built, each inside of the one before.
+    open_materials: Vec<(Span, bool)>,
     built_media: HashMap<Span, Option<MediumId>>,
     pub(super) built_textures: HashMap<Span, Option<TextureId>>,
     pub(super) texture_depth: u32,
@@ -43,6 +48,7 @@ pub(super) fn build(tree: &Tree, sources: &SourceMap, errors: ErrorList) -> (Opt
         files: Files { sources, directories: &tree.directories },
         report,
         built_materials: HashMap::new(),
+        open_materials: Vec::new(),
         built_media: HashMap::new(),
         built_textures: HashMap::new(),
         texture_depth: 0,
@@ -94,7 +100,7 @@ impl<'t> Builder<'t> {
     fn scene(&mut self, root: &'t Element) -> Option<SceneDesc> {
         let mut scene = self.object(root);
         for bsdf in scene.nested("bsdf") {
-            self.material(bsdf.element);
+            self.material(bsdf.element, false);
         }
         for medium in scene.nested("medium") {
             self.medium_id(medium.element);
@@ -154,13 +160,25 @@ impl<'t> Builder<'t> {
     }
 
     /// The material of a `<bsdf>`, built once.
-    pub(super) fn material(&mut self, element: &'t Element) -> Option<MaterialId> {
-        if let Some(&built) = self.built_materials.get(&element.span) {
+    /// A `twosided` around it makes another of it.
+    pub(super) fn material(&mut self, element: &'t Element, two_sided: bool) -> Option<MaterialId> {
+        let key = (element.span, two_sided);
+        if let Some(&built) = self.built_materials.get(&key) {
             return built;
         }
-        let id = self.bsdf(element).map(|material| self.add_material(material));
-        self.built_materials.insert(element.span, id);
-        id
+        let error = if self.open_materials.contains(&key) {
+            SceneError::at(element.span, "this material contains itself")
+        } else if self.open_materials.len() >= MAX_DEPTH {
+            SceneError::at(element.span, format!("materials are nested more than {MAX_DEPTH} deep"))
+        } else {
+            self.open_materials.push(key);
+            let id = self.bsdf(element, two_sided).map(|material| self.add_material(material));
+            self.open_materials.pop();
+            self.built_materials.insert(key, id);
+            return id;
+        };
+        self.report.errors.push(error);
+        None
     }
 
     pub(super) fn add_material(&mut self, material: MaterialDesc) -> MaterialId {

@@ -39,7 +39,7 @@ impl<'t> Builder<'t> {
         let emitter = object.only("emitter", &mut self.report);
         let emission = emitter.and_then(|emitter| self.area_light(emitter.element));
         let bsdf = object.only("bsdf", &mut self.report);
-        let material = bsdf.and_then(|bsdf| Some(Spanned::new(self.material(bsdf.element)?, bsdf.at.span)));
+        let material = bsdf.and_then(|bsdf| Some(Spanned::new(self.material(bsdf.element, false)?, bsdf.at.span)));
         let material =
             material.unwrap_or_else(|| Spanned::new(self.default_material(element, emitter.is_some()), element.span));
         let interface = self.interface(&mut object);
@@ -60,6 +60,7 @@ impl<'t> Builder<'t> {
             to_world,
             reverse_orientation,
             material,
+            opacity: None,
             emission,
             interface,
             priority,

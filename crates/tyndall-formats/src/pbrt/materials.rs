@@ -13,9 +13,9 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 6] =
-    ["diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "interface"];
-const LATER_MATERIALS: [&str; 6] = ["coatedconductor", "coateddiffuse", "hair", "measured", "mix", "subsurface"];
+const MATERIALS: [&str; 7] =
+    ["diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "mix", "interface"];
+const LATER_MATERIALS: [&str; 5] = ["coatedconductor", "coateddiffuse", "hair", "measured", "subsurface"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -69,6 +69,7 @@ impl Reader {
             "dielectric" => dielectric(&mut p, &self.textures),
             "thindielectric" => thin_dielectric(&mut p),
             "diffusetransmission" => diffuse_transmission(&mut p, &self.textures),
+            "mix" => self.mix(&mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -79,6 +80,24 @@ impl Reader {
         p.later("normalmap");
         self.finish_params(p);
         MaterialDesc { span, name, kind: made, two_sided: true }
+    }
+}
+
+impl Reader {
+    /// Two named materials, defined before or after.
+    fn mix(&mut self, p: &mut Params) -> MaterialKind {
+        let amount = p.number("amount", &self.textures, |_| true);
+        let amount = amount.unwrap_or(Spanned::new(Varying::constant(0.5), p.span));
+        let Some(of) = p.strings("materials", 2) else {
+            p.error(
+                SceneError::at(p.span, "a mix needs the names of two materials")
+                    .help("\"string materials\" [ \"first\" \"second\" ]"),
+            );
+            return MaterialKind::Interface;
+        };
+        let of = [&of[0], &of[1]]
+            .map(|name| Spanned::new(MaterialId(self.materials.refer(&name.value, name.span)), name.span));
+        MaterialKind::Mix { of, amount }
     }
 }
 

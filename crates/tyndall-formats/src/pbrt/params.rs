@@ -244,6 +244,12 @@ impl Params {
         param.values.strings.first().cloned()
     }
 
+    /// So many strings; `None` if there are others or none.
+    pub(super) fn strings(&mut self, name: &'static str, count: usize) -> Option<Vec<Spanned<String>>> {
+        let param = self.take(name, &[ParamType::String])?;
+        (param.values.strings.len() == count).then(|| param.values.strings.clone())
+    }
+
     pub(super) fn point(&mut self, name: &'static str, default: [f64; 3]) -> Spanned<[f64; 3]> {
         match self.take_one(name, &[ParamType::Point3]) {
             Some(param) => {

@@ -26,13 +26,13 @@ impl Reader {
             "bilinearmesh" => patches(&mut p).map(ShapeKind::BilinearMesh),
             _ => ply(&mut p),
         };
-        p.later_unless("alpha", 1.0);
+        let opacity = p.number("alpha", &self.textures, |_| true).filter(|a| a.value.number().is_none_or(|a| a < 1.0));
         // tyndall's own.
         let priority = p.integer_opt("priority");
         self.finish_params(p);
         if let Some(kind) = kind {
-            let shape = self.bound(&s, kind);
-            self.place(ShapeDesc { priority, ..shape });
+            let shape = ShapeDesc { opacity, priority, ..self.bound(&s, kind) };
+            self.place(shape);
         }
     }
 
@@ -53,6 +53,7 @@ impl Reader {
             to_world: now.ctm,
             reverse_orientation: now.reverse_orientation ^ mirrored,
             material,
+            opacity: None,
             emission: now.area_light.as_deref().cloned(),
             interface: now.interface,
             priority: None,

@@ -8,6 +8,7 @@ use super::{Integrator, in_one_lane};
 use crate::{
     bsdf::Bsdf,
     light::Light,
+    material::Material,
     math::{Ray, Vec2, Vec3},
     medium::{Inside, Within},
     path::{History, Vertex, shadow},
@@ -82,10 +83,15 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             Some(hit) => {
                 let mut surface = scene.geometry.interaction(&ray, &hit);
                 let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, w, lane, tally);
+                let material = scene.meet(&surface, ray.dir, || sampler.next_1d());
+                if matches!(material, Material::Hole) {
+                    ray = surface.spawn(ray.dir);
+                    continue;
+                }
                 if let Some((_, light)) = scene.light_at(&surface) {
                     radiance += throughput * light.le(surface.ng, -ray.dir, w).lane(lane);
                 }
-                let bsdf = skin.bsdf(scene, &surface, w, lane);
+                let bsdf = skin.bsdf(material, &surface, w, lane);
                 if matches!(bsdf, Bsdf::Null) {
                     (within, inside) = (beyond, beyond.inside(scene, w));
                     ray = surface.spawn(ray.dir);
@@ -96,7 +102,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             }
         };
 
-        radiance += throughput * dirac_lights(scene, &vertex, ray.dir, [&within, &beyond], (w, lane), tally);
+        radiance += throughput * dirac_lights(scene, &vertex, ray.dir, [&within, &beyond], (w, lane), sampler, tally);
         let Some(next) = vertex.sample([sampler.next_1d(), sampler.next_1d(), sampler.next_1d()]) else {
             return radiance;
         };
@@ -120,23 +126,30 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
     }
 }
 
-/// What lights without extent give at a vertex that was reached along `dir`: all of them.
+/// What lights without extent give at a vertex that was reached along `dir`: all of them. Lights without a surface belong
+/// to them.
 fn dirac_lights(
     scene: &Scene,
     vertex: &Vertex,
     dir: Vec3,
     [within, beyond]: [&Within; 2],
     (w, lane): (&Wavelengths, usize),
+    sampler: &mut Sampler,
     tally: &mut Tally,
 ) -> f32 {
     if !vertex.can_use_light_samples() {
         return 0.0;
     }
     let reference = vertex.reference();
-    let dirac = |l: &&Light| matches!(l, Light::Point(_) | Light::Spot(_) | Light::Distant(_));
+    let dirac = |l: &&Light| match l {
+        Light::Point(_) | Light::Spot(_) | Light::Distant(_) => true,
+        Light::Area(light) => light.opacity == 0.0,
+        Light::Constant(_) | Light::Map(_) => false,
+    };
     let mut sum = 0.0;
     for light in scene.lights.lights.iter().filter(dirac) {
-        let Some(sample) = light.sample(&reference, Vec2::ZERO, w) else { continue };
+        let u = if matches!(light, Light::Area(_)) { sampler.next_2d() } else { Vec2::ZERO };
+        let Some(sample) = light.sample(&reference, u, w) else { continue };
         let f = vertex.eval(sample.dir).0.lane(lane);
         let origin = vertex.shadow_origin(sample.dir);
         let crosses =
@@ -146,7 +159,7 @@ fn dirac_lights(
         if f > 0.0
             && let Some(t) = shadow::transmittance(scene, origin, sample.dir, &sample.target, start, (w, lane), tally)
         {
-            sum += f * sample.li.lane(lane) * t.lane(lane);
+            sum += f * sample.li.lane(lane) * t.lane(lane) / sample.pdf;
         }
     }
     sum

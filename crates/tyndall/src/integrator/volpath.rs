@@ -70,19 +70,40 @@ impl Integrator for VolPath {
 }
 
 impl Path {
-    /// One event of the path: a term of the transport equation each.
+    /// Finds the next event and responds to it.
     #[inline]
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
-        match self.next_event(scene, tally) {
+        let event = self.next_event(scene, tally);
+        self.respond(event, scene, settings, sink, tally)
+    }
+
+    /// What an event does to the path: a term of the transport equation each.
+    #[inline]
+    pub fn respond(
+        &mut self,
+        event: Event,
+        scene: &Scene,
+        settings: &VolPath,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) -> Status {
+        match event {
             Event::Escape => {
                 self.find_environment(scene, sink);
                 Status::Done
             }
             Event::Surface(mut hit) => {
                 let skin = if scene.has_bodies() { self.meet(scene, &mut hit, tally) } else { Skin::Written };
-                self.find_emitter(scene, &hit, sink);
-                let (bsdf, disperses) = match (skin, scene.material(&hit)) {
+                let sampler = &mut self.sampler;
+                let material = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
+                let (bsdf, disperses) = match (skin, material) {
+                    (_, Material::Hole) => {
+                        self.pass_opening(scene, &hit);
+                        self.ray = hit.spawn(self.ray.dir);
+                        return Status::Alive;
+                    }
                     (Skin::Open, _) | (Skin::Written, Material::Null) => {
+                        self.find_emitter(scene, &hit, sink);
                         self.cross(scene, &hit);
                         return Status::Alive;
                     }
@@ -93,6 +114,7 @@ impl Path {
                         (material.bsdf_between(eta, &(&hit).into(), &self.wavelengths), disperses)
                     }
                 };
+                self.find_emitter(scene, &hit, sink);
                 tally.surface_vertices += 1;
                 let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
                 self.scatter(scene, settings, &vertex, disperses, sink, tally)
@@ -103,7 +125,7 @@ impl Path {
                 let vertex = Vertex::Medium { p, dir: self.ray.dir, phase };
                 self.scatter(scene, settings, &vertex, false, sink, tally)
             }
-            Event::Absorb { emitted } => {
+            Event::Absorb { emitted, .. } => {
                 self.find_emission(emitted, sink);
                 Status::Done
             }
@@ -148,6 +170,7 @@ impl Path {
 
     /// Straight on through a surface without a material.
     fn cross(&mut self, scene: &Scene, hit: &Interaction) {
+        self.pass_opening(scene, hit);
         self.enter(scene, hit);
         self.ray = hit.spawn(self.ray.dir);
     }
@@ -158,6 +181,15 @@ impl Path {
         let (skin, beyond) = self.within.meet(scene, hit, self.ray.dir, &self.wavelengths, self.hero, tally);
         self.beyond = beyond;
         skin
+    }
+
+    /// A surface that is open in part was passed with that probability: as a medium is, for light sampling through it.
+    fn pass_opening(&mut self, scene: &Scene, hit: &Interaction) {
+        self.history.passed();
+        if !matches!(scene.material(hit), Material::Null) {
+            let open = scene.openness(hit, self.ray.dir).part;
+            self.weights.pass(Lanes::splat(open), self.hero);
+        }
     }
 
     /// Enters the medium on the far side of a surface.

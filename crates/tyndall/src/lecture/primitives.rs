@@ -15,6 +15,7 @@ use std::{
 use crate::{
     bsdf::Bsdf,
     light::Target,
+    material::Material,
     math::{Ray, Vec3, rounding::gamma},
     medium::{Inside, MediumId, Within},
     path::{Vertex, shadow},
@@ -201,18 +202,28 @@ impl<'a> World<'a> {
         }
         self.depth += 1;
         self.tally.rays += 1;
-        let (ray, within) = self.leave(x, omega);
+        let (mut ray, within) = self.leave(x, omega);
         let inside = self.inside(&within);
-        let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
-            return Some(Point { place: Place::Infinity, within, inside, distance: f32::INFINITY });
-        };
-        // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
-        let distance = hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
-        let mut hit = self.scene.geometry.interaction(&ray, &hit);
-        let (skin, beyond) = within.meet(self.scene, &mut hit, omega, &self.wavelengths, self.lane, self.tally);
-        let bsdf = skin.bsdf(self.scene, &hit, &self.wavelengths, self.lane);
-        let from_outside = omega.dot(hit.ng) < 0.0;
-        Some(Point { place: Place::Surface { hit, bsdf, from_outside, beyond }, within, inside, distance })
+        let mut gone = 0.0;
+        loop {
+            let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
+                return Some(Point { place: Place::Infinity, within, inside, distance: f32::INFINITY });
+            };
+            // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
+            let distance = gone + hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
+            let t = hit.t;
+            let mut hit = self.scene.geometry.interaction(&ray, &hit);
+            let (skin, beyond) = within.meet(self.scene, &mut hit, omega, &self.wavelengths, self.lane, self.tally);
+            let material = self.scene.meet(&hit, omega, || self.sampler.next_1d());
+            if matches!(material, Material::Hole) {
+                gone += t;
+                ray = hit.spawn(omega);
+                continue;
+            }
+            let bsdf = skin.bsdf(material, &hit, &self.wavelengths, self.lane);
+            let from_outside = omega.dot(hit.ng) < 0.0;
+            return Some(Point { place: Place::Surface { hit, bsdf, from_outside, beyond }, within, inside, distance });
+        }
     }
 
     /// `traceRay` past all surfaces without a material, whatever they emit.
@@ -371,12 +382,11 @@ impl<'a> World<'a> {
         Some((sample.dir, Luminaire { emitted_radiance, target: sample.target }, probability * sample.pdf))
     }
 
-    /// Whether `y` is the first thing that a ray from `x` along `ω′` meets: 1 or 0.
+    /// Whether `y` is the first thing that a ray from `x` along `ω′` meets: 1 or 0, or what is open of the surfaces between.
     pub(super) fn visibility(&mut self, x: &Point, omega_prime: Vec3, y: &Luminaire) -> f32 {
         let (ray, within) = self.leave(x, omega_prime);
         let wavelengths = (&self.wavelengths, self.lane);
-        let seen = shadow::visible(self.scene, ray.origin, omega_prime, &y.target, &within, wavelengths, self.tally);
-        f32::from(u8::from(seen))
+        shadow::visible(self.scene, ray.origin, omega_prime, &y.target, &within, wavelengths, self.tally)
     }
 
     /// `attenuation(x, y)`: `exp(−∫ σ_t)` from `x` along `ω′` to `y`, 0 where a surface stands between.

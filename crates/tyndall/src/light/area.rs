@@ -23,6 +23,9 @@ pub struct AreaLight {
     pub luminance: f32,
     /// Whether the back shines too.
     pub two_sided: bool,
+    /// How much of the surface is there \[1\]: the rest are holes. Of a surface that is not there at all the light remains,
+    /// and only light sampling finds it (pbrt).
+    pub opacity: f32,
 }
 
 /// The shapes that can emit.
@@ -88,6 +91,22 @@ impl EmitterShape {
             Self::Parallelogram { e1, e2, .. } => e1.cross(e2).length(),
             Self::Sphere { radius, .. } => 4.0 * PI * radius * radius,
             Self::Disk { radius, inner, .. } => PI * (radius * radius - inner * inner),
+        }
+    }
+
+    /// The greatest area that it shows to any side [length²].
+    pub fn projected_area(&self) -> f32 {
+        match *self {
+            Self::Sphere { radius, .. } => PI * radius * radius,
+            _ => self.area(),
+        }
+    }
+
+    /// The side that shines, of a flat emitter.
+    pub fn normal(&self) -> Option<Vec3> {
+        match *self {
+            Self::Triangle { ng, .. } | Self::Parallelogram { ng, .. } | Self::Disk { ng, .. } => Some(ng),
+            Self::Sphere { .. } => None,
         }
     }
 
@@ -173,12 +192,13 @@ impl AreaLight {
         let to_light = point.p - from.p;
         let d2 = to_light.length_squared();
         let dir = to_light / d2.sqrt();
-        let li = self.le(point.ng, -dir, wavelengths);
+        let shares = if self.opacity == 0.0 { 1.0 } else { self.opacity };
+        let li = self.le(point.ng, -dir, wavelengths) * shares;
         (pdf > 0.0 && pdf.is_finite() && d2 > 0.0 && !li.is_zero()).then_some(LightSample {
             dir,
             li,
             pdf,
-            dirac: false,
+            dirac: self.opacity == 0.0,
             target: Target::Surface { p: point.p, error: point.error, ng: point.ng },
         })
     }
@@ -280,7 +300,7 @@ mod tests {
     use super::*;
 
     fn light(shape: EmitterShape) -> AreaLight {
-        AreaLight { shape, radiance: Spectrum::constant(1.0), luminance: 1.0, two_sided: false }
+        AreaLight { shape, radiance: Spectrum::constant(1.0), luminance: 1.0, two_sided: false, opacity: 1.0 }
     }
 
     /// Irradiance of a uniform emitter on a plane that faces it, over π: the form factor from a point.

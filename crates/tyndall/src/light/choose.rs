@@ -1,10 +1,9 @@
-//! Which light to sample: with few lights, in proportion to a guess at the irradiance each makes at the point; with
-//! many, in proportion to that guess at the middle of the scene.
+//! Which light to sample: of a few, in proportion to a guess at the irradiance each makes at the point; of many, by the
+//! bounds of a tree over them.
 
-use super::{Light, LightId, Reference};
-use crate::sampling::discrete::Discrete;
+use super::{Light, LightId, Reference, hierarchy::Hierarchy};
 
-/// Up to so many lights are weighed at every point.
+/// Up to so many lights are weighed one by one.
 const WEIGHED: usize = 16;
 
 /// All lights of a scene.
@@ -14,21 +13,16 @@ pub struct LightTable {
     pub lights: Vec<Light>,
     /// Those that escaping rays find.
     pub environments: Vec<LightId>,
-    /// Fixed probabilities for scenes with many lights.
-    many: Option<Discrete>,
+    /// For scenes with many lights.
+    many: Option<Hierarchy>,
 }
 
 impl LightTable {
-    /// A table of lights; `middle` is where a scene with many of them is judged from [length].
-    pub fn new(lights: Vec<Light>, middle: crate::math::Vec3) -> Self {
+    /// A table of lights.
+    pub fn new(lights: Vec<Light>) -> Self {
         let environments =
             (0..lights.len()).filter(|i| lights[*i].is_environment()).map(|i| LightId(i as u32)).collect();
-        let many = (lights.len() > WEIGHED).then_some(()).and_then(|()| {
-            let weights: Vec<f32> = lights.iter().map(|l| l.importance(middle).min(1e30)).collect();
-            let mean = weights.iter().sum::<f32>() / weights.len() as f32;
-            // A light that the middle cannot see may still shine elsewhere: every one keeps a share.
-            Discrete::new(&weights.iter().map(|w| w + 0.1 * mean + f32::MIN_POSITIVE).collect::<Vec<_>>())
-        });
+        let many = (lights.len() > WEIGHED).then(|| Hierarchy::new(&lights));
         Self { lights, environments, many }
     }
 
@@ -38,16 +32,13 @@ impl LightTable {
         &self.lights[id.0 as usize]
     }
 
-    /// A light to sample from `from`, with its probability and a fresh uniform number; `None` when none shines here.
+    /// A light to sample from `from`, with its probability; `None` when none shines here.
     #[inline]
     pub fn choose(&self, from: &Reference, u: f32) -> Option<(LightId, f32)> {
         match (self.lights.len(), &self.many) {
             (0, _) => None,
             (1, _) => Some((LightId(0), 1.0)),
-            (_, Some(many)) => {
-                let (index, probability, _) = many.sample(u);
-                Some((LightId(index as u32), probability))
-            }
+            (_, Some(many)) => many.choose(from, u),
             _ => self.choose_weighed(from, u),
         }
     }
@@ -57,10 +48,10 @@ impl LightTable {
     pub fn probability(&self, from: &Reference, id: LightId) -> f32 {
         match (self.lights.len(), &self.many) {
             (1, _) => 1.0,
-            (_, Some(many)) => many.pmf(id.0 as usize),
+            (_, Some(many)) => many.probability(from, id),
             _ => {
-                let total: f32 = self.lights.iter().map(|l| l.importance(from.p)).sum();
-                if total > 0.0 { self.get(id).importance(from.p) / total } else { 0.0 }
+                let total: f32 = self.lights.iter().map(|l| weight(l, from)).sum();
+                if total > 0.0 { weight(self.get(id), from) / total } else { 0.0 }
             }
         }
     }
@@ -68,9 +59,9 @@ impl LightTable {
     fn choose_weighed(&self, from: &Reference, u: f32) -> Option<(LightId, f32)> {
         let mut weights = [0.0; WEIGHED];
         let mut total = 0.0;
-        for (weight, light) in weights.iter_mut().zip(&self.lights) {
-            *weight = light.importance(from.p);
-            total += *weight;
+        for (place, light) in weights.iter_mut().zip(&self.lights) {
+            *place = weight(light, from);
+            total += *place;
         }
         if total <= 0.0 {
             return None;
@@ -88,4 +79,10 @@ impl LightTable {
         }
         last
     }
+}
+
+/// A guess at the irradiance that is finite even at a point light.
+#[inline]
+fn weight(light: &Light, from: &Reference) -> f32 {
+    light.importance(from.p).min(1e30)
 }

@@ -1,9 +1,11 @@
 //! Where light comes from: emitting surfaces, points, spots, distant suns and environments.
 
 pub mod area;
+pub mod bounds;
 pub mod choose;
 pub mod distant;
 pub mod environment;
+mod hierarchy;
 pub mod point;
 pub mod spot;
 

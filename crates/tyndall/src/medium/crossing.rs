@@ -18,6 +18,7 @@ use crate::{
     scene::Scene,
     shape::{Interaction, offset_point},
     spectrum::Wavelengths,
+    surface::Openness,
     tally::Tally,
 };
 
@@ -45,12 +46,23 @@ pub enum Skin {
 impl Skin {
     /// The BSDF; [`Bsdf::Null`] where nothing is.
     #[inline]
-    pub fn bsdf(self, scene: &Scene, hit: &Interaction, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
-        let material = scene.material(hit);
+    pub fn bsdf(self, material: &Material, hit: &Interaction, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
         match self {
             Self::Open => Bsdf::Null,
             Self::Written => material.bsdf(&hit.into(), wavelengths, hero),
             Self::Between { eta, .. } => material.bsdf_between(eta, &hit.into(), wavelengths),
+        }
+    }
+}
+
+impl Skin {
+    /// What of the light along `dir` passes straight.
+    #[inline]
+    pub(crate) fn openness(self, scene: &Scene, hit: &Interaction, dir: Vec3) -> Openness {
+        match self {
+            Self::Open => Openness { part: 1.0, crosses: true },
+            Self::Between { .. } => Openness { part: 0.0, crosses: false },
+            Self::Written => scene.openness(hit, dir),
         }
     }
 }

@@ -29,6 +29,8 @@ pub enum Event {
     },
     /// A collision in a medium that only absorbs; or a path that has leaked out of its medium, which is tallied.
     Absorb {
+        /// Where [length].
+        p: Vec3,
         /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
         emitted: Lanes,
     },
@@ -65,7 +67,12 @@ impl Path {
             Some(coefficients) => {
                 let sigma_t = coefficients.sigma_t.lane(self.hero);
                 if sigma_t > 0.0 {
-                    -fast::ln(self.sampler.flight(self.history.vertices)) / sigma_t
+                    // The stratified number of a vertex serves once: behind a boundary it has been looked at already.
+                    let u = match self.history.passed {
+                        0 => self.sampler.flight(self.history.vertices),
+                        _ => self.sampler.rng.next_positive(),
+                    };
+                    -fast::ln(u) / sigma_t
                 } else {
                     f32::INFINITY
                 }
@@ -89,7 +96,7 @@ impl Path {
         let p = self.ray.at(flight);
         if !scene.may_contain(id, p) {
             tally.leaks += 1;
-            return Event::Absorb { emitted: Lanes::ZERO };
+            return Event::Absorb { p, emitted: Lanes::ZERO };
         }
         tally.collisions += 1;
         let transmittance = coefficients.transmittance(flight);
@@ -99,7 +106,7 @@ impl Path {
             coefficients.source * self.weights.volume_emission(coefficients.sigma_t, transmittance)
         };
         if coefficients.sigma_s.is_zero() {
-            return Event::Absorb { emitted };
+            return Event::Absorb { p, emitted };
         }
         self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
         if let Some(Part { share, probability, .. }) = part {

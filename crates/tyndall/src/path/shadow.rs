@@ -1,8 +1,7 @@
-//! Whether light arrives: shadow rays, through surfaces without a material, with analytic transmittance.
+//! Whether light arrives: shadow rays, through surfaces without a material or with holes, with analytic transmittance.
 
 use crate::{
     light::Target,
-    material::Material,
     math::{Ray, Vec3, rounding::gamma},
     medium::{Inside, Skin, Within},
     scene::Scene,
@@ -47,21 +46,23 @@ pub fn transmittance(
         }
         let Some(hit) = hit else { return Some(transmittance) };
         let mut surface = scene.geometry.interaction(&ray, &hit);
-        if scene.has_bodies() {
-            let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, wavelengths, hero, tally);
-            if blocks(skin, scene.material(&surface)) {
-                return None;
-            }
-            within = beyond;
-            inside = within.inside(scene, wavelengths);
+        let (skin, beyond) = if scene.has_bodies() {
+            within.meet(scene, &mut surface, ray.dir, wavelengths, hero, tally)
         } else {
-            let object = scene.object(&surface);
-            if blocks(Skin::Written, &scene.materials[object.material.0 as usize]) {
-                return None;
+            (Skin::Written, within)
+        };
+        let open = skin.openness(scene, &surface, ray.dir);
+        if open.part <= 0.0 {
+            return None;
+        }
+        transmittance *= open.part;
+        if scene.has_bodies() {
+            if open.crosses {
+                within = beyond;
+                inside = within.inside(scene, wavelengths);
             }
-            if let Some(interface) = object.interface {
-                inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
-            }
+        } else if let Some(interface) = scene.object(&surface).interface.filter(|_| open.crosses) {
+            inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
         }
         let next = surface.spawn(ray.dir).origin;
         (ray, t_max) = segment(next, dir, target);
@@ -71,17 +72,8 @@ pub fn transmittance(
     }
 }
 
-/// Whether a surface stops light that goes straight.
-#[inline]
-fn blocks(skin: Skin, material: &Material) -> bool {
-    match skin {
-        Skin::Open => false,
-        Skin::Between { .. } => true,
-        Skin::Written => !matches!(material, Material::Null),
-    }
-}
-
-/// Whether no surface with a material stands between `origin` and a light, media left out of account.
+/// What of the way from `origin` to a light no surface blocks \[1\], media left out of account: 1 or 0, but for surfaces
+/// that are open in part.
 pub fn visible(
     scene: &Scene,
     origin: Vec3,
@@ -90,21 +82,26 @@ pub fn visible(
     within: &Within,
     (wavelengths, hero): (&Wavelengths, usize),
     tally: &mut Tally,
-) -> bool {
+) -> f32 {
     let (mut ray, mut t_max) = segment(origin, dir, target);
     let mut within = *within;
+    let mut open = 1.0;
     loop {
         tally.shadow_rays += 1;
-        let Some(hit) = scene.geometry.intersect(&ray, t_max) else { return true };
+        let Some(hit) = scene.geometry.intersect(&ray, t_max) else { return open };
         let mut surface = scene.geometry.interaction(&ray, &hit);
         let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, wavelengths, hero, tally);
-        if blocks(skin, scene.material(&surface)) {
-            return false;
+        let here = skin.openness(scene, &surface, ray.dir);
+        open *= here.part;
+        if open <= 0.0 {
+            return 0.0;
         }
-        within = beyond;
+        if here.crosses {
+            within = beyond;
+        }
         (ray, t_max) = segment(surface.spawn(ray.dir).origin, dir, target);
         if t_max <= 0.0 {
-            return true;
+            return open;
         }
     }
 }

@@ -95,6 +95,17 @@ impl World {
         }
     }
 
+    /// A material that others are made of.
+    pub(crate) fn part(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// `1 − amount` of one material and `amount` of another.
+    pub(crate) fn mix(&mut self, first: Material, second: Material, amount: f32) -> Material {
+        Material::Mix { of: [self.part(first), self.part(second)], amount: amount.into() }
+    }
+
     fn object(&mut self, material: Material, interface: Option<MediumInterface>) {
         self.materials.push(material);
         self.objects.push(Object {
@@ -224,7 +235,13 @@ impl World {
     fn shine(&mut self, shape: EmitterShape, le: f32) {
         let id = LightId(self.lights.len() as u32);
         self.objects.last_mut().unwrap().emission = Emission::Whole(id);
-        self.lights.push(Light::Area(AreaLight { shape, radiance: grey(le), luminance: le, two_sided: false }));
+        self.lights.push(Light::Area(AreaLight {
+            shape,
+            radiance: grey(le),
+            luminance: le,
+            two_sided: false,
+            opacity: 1.0,
+        }));
     }
 
     /// The same radiance from everywhere.
@@ -241,7 +258,7 @@ impl World {
     }
 
     pub(crate) fn scene(self) -> Scene {
-        let table = LightTable::new(self.lights, Vec3::ZERO);
+        let table = LightTable::new(self.lights);
         Scene::new(
             self.color,
             self.camera,

@@ -27,7 +27,7 @@ const FAULTS: &[(&str, &str)] = &[
     (r"<shape/>", r#"2:2: <shape> lacks the attribute "type""#),
     (
         r#"<shape type="cube"><bsdf type="hair"/></shape>"#,
-        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null""#,
+        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "blendbsdf", "mask""#,
     ),
     (
         r#"<medium type="heterogeneous"><float name="x" value="1"/></medium>"#,
@@ -132,6 +132,11 @@ const FAULTS: &[(&str, &str)] = &[
         r#"<bsdf type="twosided" id="a"><ref id="a"/></bsdf>"#,
         r#"2:13: "twosided" is two-sided already | leave the "twosided" out"#,
     ),
+    (
+        r#"<bsdf type="blendbsdf" id="a"><float name="weight" value="1"/><ref id="a"/><bsdf type="null"/></bsdf>"#,
+        "2:1: this material contains itself",
+    ),
+    (r#"<bsdf type="mask"/>"#, r#"2:1: "mask" is made of 1 <bsdf>, not of 0"#),
     (r#"<shape type="instance"><shape type="cube"/></shape>"#, r#"2:24: the shape "cube" is no "shapegroup""#),
     (
         r#"<shape type="cube"><medium type="homogeneous" name="inside"/></shape>"#,

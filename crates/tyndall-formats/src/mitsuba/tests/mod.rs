@@ -2,6 +2,7 @@
 
 mod conventions;
 mod faults;
+mod materials;
 mod peers;
 
 use std::path::{Path, PathBuf};

@@ -2,6 +2,7 @@
 
 mod errors;
 mod fuzz;
+mod materials;
 mod scenes;
 mod textures;
 mod values;

@@ -1,0 +1,24 @@
+//! Materials that are made of others.
+
+use super::*;
+use crate::desc::{MaterialKind, Varying};
+
+#[test]
+fn a_blend_has_two_parts_a_mask_one_and_two_faces_are_made_two_sided() {
+    let scene = parsed(&scene(
+        r#"<shape type="sphere"><bsdf type="blendbsdf"><float name="weight" value="0.3"/>
+            <bsdf type="mask"><bsdf type="diffuse" id="a"/></bsdf><bsdf type="twosided"><bsdf type="blendbsdf">
+            <float name="weight" value="0.1"/><bsdf type="conductor"/><ref id="a"/></bsdf></bsdf></bsdf></shape>
+        <shape type="sphere"><bsdf type="twosided"><ref id="a"/><bsdf type="conductor"/></bsdf></shape>"#,
+    ));
+    let of = |i: usize| scene.material(scene.shapes[i].material.value).unwrap();
+    let MaterialKind::Mix { of: [mask, both], amount } = &of(0).kind else { panic!() };
+    assert_eq!(amount.value, Varying::constant(0.3));
+    let MaterialKind::Mask { of: diffuse, opacity } = &scene.material(mask.value).unwrap().kind else { panic!() };
+    assert_eq!(opacity.value, Varying::constant(0.5));
+    assert!(!scene.material(diffuse.value).unwrap().two_sided);
+    let MaterialKind::Mix { of: parts, .. } = &scene.material(both.value).unwrap().kind else { panic!() };
+    assert!(parts.iter().all(|part| scene.material(part.value).unwrap().two_sided));
+    let MaterialKind::TwoFaced { of: faces } = &of(1).kind else { panic!() };
+    assert!(faces.iter().all(|face| scene.material(face.value).unwrap().two_sided));
+}

@@ -1,0 +1,59 @@
+//! Materials that are made of others, and surfaces with holes.
+
+use std::path::Path;
+
+use tyndall::{material::Material, spectrum::ColorMode};
+
+use super::{parse, world};
+use crate::build::build;
+use crate::desc::{MaterialKind, Varying};
+
+#[test]
+fn a_mix_names_two_materials_that_may_come_later() {
+    let desc = world(
+        r#"MakeNamedMaterial "m" "string type" "mix" "string materials" [ "a" "b" ] "float amount" 0.25
+        MakeNamedMaterial "b" "string type" "diffuse" MakeNamedMaterial "a" "string type" "interface"
+        NamedMaterial "m" Shape "sphere""#,
+    );
+    let kind = |name: &str| &desc.materials.iter().find(|m| m.name.as_deref() == Some(name)).unwrap().kind;
+    let MaterialKind::Mix { of: [a, b], amount } = kind("m") else { panic!() };
+    assert_eq!(desc.material(a.value).unwrap().name.as_deref(), Some("a"));
+    assert_eq!(desc.material(b.value).unwrap().name.as_deref(), Some("b"));
+    assert_eq!(amount.value, Varying::constant(0.25));
+}
+
+#[test]
+fn a_shape_with_alpha_has_holes_and_one_of_alpha_1_has_none() {
+    let text = r#"WorldBegin Material "diffuse" Shape "sphere" "float alpha" 0.5 Shape "sphere" "float alpha" 1
+        Shape "sphere" "float alpha" 0.5 Texture "t" "float" "checkerboard" Shape "sphere" "texture alpha" "t""#;
+    let (desc, sources) = parse(Path::new("scene.pbrt"), text).unwrap();
+    let opacity = |i: usize| desc.shapes[i].opacity.as_ref().map(|o| o.value.number());
+    assert_eq!([0, 1, 2, 3].map(opacity), [Some(Some(0.5)), None, Some(Some(0.5)), Some(None)]);
+    let (scene, _) = build(&desc, sources, ColorMode::Rgb).unwrap();
+    let material = |i: usize| &scene.materials[scene.objects[i].material.0 as usize];
+    assert!(matches!(material(1), Material::Diffuse { .. }));
+    let Material::Mix { of: [hole, diffuse], .. } = material(0) else { panic!() };
+    assert!(matches!(scene.materials[hole.0 as usize], Material::Hole));
+    assert!(matches!(scene.materials[diffuse.0 as usize], Material::Diffuse { .. }));
+    assert_eq!(scene.objects[0].material, scene.objects[2].material, "made once");
+    assert!(scene.has_null_surfaces());
+}
+
+/// 2¹¹ parts are too many, and so are endless ones.
+#[test]
+fn a_material_that_contains_itself_is_an_error() {
+    let fault = |text: &str| {
+        let (desc, sources) = parse(Path::new("scene.pbrt"), &format!("WorldBegin {text}")).unwrap();
+        build(&desc, sources, ColorMode::Rgb).unwrap_err().errors[0].message.clone()
+    };
+    let mix = |name: &str, of: &str| {
+        format!(r#"MakeNamedMaterial "{name}" "string type" "mix" "string materials" [ "{of}" "{of}" ] "#)
+    };
+    let message = "this material contains itself, or more than 1024 others";
+    assert_eq!(fault(&(mix("a", "b") + &mix("b", "a"))), message);
+    let mut doubled = r#"MakeNamedMaterial "0" "string type" "diffuse" "#.to_owned();
+    for i in 0..11 {
+        doubled += &mix(&format!("{}", i + 1), &format!("{i}"));
+    }
+    assert_eq!(fault(&doubled), message);
+}

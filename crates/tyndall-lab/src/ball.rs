@@ -1,0 +1,108 @@
+//! A scattering ball: what of the light sent at it, or made in it, is absorbed or escapes.
+
+use tyndall::{
+    math::{Ray, Vec3},
+    tally::Tally,
+};
+
+use crate::photon::{Collision, Detector, Photon, launch};
+use crate::point::{any_direction, source_stream};
+use crate::run::{Batch, Estimate, Sums, Verdict, photons_of, run};
+use crate::world::{SetupError, Substance, World, within};
+
+/// Where the light comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub enum Source {
+    /// A wide parallel beam from outside.
+    Beam,
+    /// Uniform and isotropic inside of the ball.
+    Volume,
+}
+
+/// What became of the light.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Balance {
+    /// Photons.
+    pub photons: u64,
+    /// Absorbed part \[1\].
+    pub absorbed: Estimate,
+    /// Part that leaves \[1\].
+    pub escaped: Estimate,
+    /// Part that leaves without a collision \[1\].
+    pub unscattered: Estimate,
+    /// Part that leaves after 0, 1, 2, … collisions \[1\].
+    pub by_order: Vec<Estimate>,
+}
+
+struct Recorder {
+    totals: Vec<f64>,
+}
+
+/// Orders that are kept apart.
+const ORDERS: usize = 16;
+
+impl Detector for Recorder {
+    fn collide(&mut self, c: &Collision) {
+        self.totals[0] += c.absorbed;
+    }
+
+    fn leave(&mut self, photon: &Photon) {
+        self.totals[1] += photon.weight();
+        if let Some(total) = self.totals.get_mut(2 + photon.order() as usize) {
+            *total += photon.weight();
+        }
+    }
+}
+
+/// Sends photons at a ball of `radius` [length] in vacuum, or starts them in it.
+///
+/// # Errors
+/// The substance or the radius cannot be.
+pub fn balance(
+    substance: &Substance,
+    radius: f64,
+    source: Source,
+    photons: u64,
+    seed: u64,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Result<Balance, SetupError> {
+    within("the radius", radius, "positive", |r| r > 0.0 && r.is_finite())?;
+    let mut world = World::default();
+    world.sphere(radius, substance, &Substance::VACUUM)?;
+    let scene = world.build(if source == Source::Beam { &Substance::VACUUM } else { substance })?;
+    let batch = |number| -> Batch {
+        let mut recorder = Recorder { totals: vec![0.0; 2 + ORDERS] };
+        let mut tally = Tally::default();
+        for photon in photons_of(number) {
+            let ray = ray_of(source, radius as f32, photon, seed);
+            launch(&scene, ray, photon, seed, &mut recorder, &mut tally);
+        }
+        (recorder.totals, tally)
+    };
+    let sums = run(2 + ORDERS, photons, batch, look);
+    Ok(Balance {
+        photons: sums.photons(),
+        absorbed: sums.estimate(0),
+        escaped: sums.estimate(1),
+        unscattered: sums.estimate(2),
+        by_order: sums.estimates(2..2 + ORDERS),
+    })
+}
+
+fn ray_of(source: Source, radius: f32, photon: u64, seed: u64) -> Ray {
+    // The first two numbers of the stream are those of the direction.
+    let mut rng = source_stream(photon, seed);
+    let (u, v, w) = (rng.next_1d(), rng.next_1d(), rng.next_1d());
+    match source {
+        Source::Beam => {
+            let (sin, cos) = (std::f32::consts::TAU * v).sin_cos();
+            let r = radius * u.sqrt();
+            Ray::new(Vec3::new(r * cos, r * sin, 2.0 * radius), -Vec3::Z)
+        }
+        Source::Volume => {
+            let dir = any_direction(photon, seed);
+            let place = any_direction(photon, seed ^ 0x9e37_79b9_7f4a_7c15);
+            Ray::new(place * (radius * w.cbrt()), dir)
+        }
+    }
+}

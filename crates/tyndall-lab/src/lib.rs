@@ -1,0 +1,26 @@
+//! Virtual instruments: what an optical bench would measure, from the renderer's own media, phase functions, boundaries
+//! and random walks.
+//!
+//! | instrument | what it measures |
+//! |---|---|
+//! | [`slab`] | plane layers: reflectance, transmittance, absorption; by angle, radius, depth, order, path length |
+//! | [`ball`] | a scattering sphere: what it absorbs, what escapes |
+//! | [`point`] | an isotropic point source in an infinite medium: fluence against distance |
+//! | [`walk`] | moments of a random walk |
+//!
+//! [`photon`] launches photons and lets an instrument watch them; [`run`] repeats that until the figures are good enough,
+//! each with its standard error; [`verify`] holds the figures against published numbers.
+//!
+//! Lengths are in any unit, coefficients per that unit. Powers are fractions of the light that is sent in.
+
+pub mod ball;
+
+pub mod mci;
+pub mod photon;
+pub mod point;
+pub mod run;
+pub mod slab;
+pub mod verify;
+
+pub mod walk;
+pub mod world;

@@ -1,0 +1,101 @@
+//! Photons: launched, followed event by event with the renderer's own walk, watched by a detector.
+//!
+//! A photon is a [`Path`] that starts at the source. The renderer's paths carry radiance, which is compressed by `1/η²`
+//! where light enters a denser body; a photon carries power, which is not. [`Photon::weight`] undoes the compression.
+//! There are no lights in an experiment, so a path's response to an event is the walk and nothing else.
+
+use tyndall::{
+    integrator::VolPath,
+    integrator::volpath::Status,
+    math::{Ray, Vec3},
+    path::{Event, Path},
+    sampling::{Sampler, SamplerKind},
+    scene::Scene,
+    spectrum::{Lanes, Wavelengths},
+    tally::Tally,
+};
+
+/// A photon on its way.
+#[derive(Debug)]
+pub struct Photon {
+    path: Path,
+    /// Where it last met a surface, or started [length].
+    pub at_surface: Vec3,
+    /// Length of its way so far [length].
+    pub travelled: f64,
+}
+
+/// A collision.
+#[derive(Debug, Clone, Copy)]
+pub struct Collision {
+    /// Where [length].
+    pub p: Vec3,
+    /// The power that collides, as a part of what was sent \[1\].
+    pub weight: f64,
+    /// What of it is absorbed \[1\].
+    pub absorbed: f64,
+    /// Length of the way so far [length].
+    pub travelled: f64,
+    /// Collisions before this one.
+    pub order: u32,
+}
+
+/// What looks at photons.
+pub trait Detector {
+    /// A photon collides.
+    fn collide(&mut self, _collision: &Collision) {}
+    /// A photon leaves for good. Its [`Photon::dir`] is that in which it leaves [`Photon::at_surface`].
+    fn leave(&mut self, _photon: &Photon) {}
+    /// Whether a photon is to be followed no further after this many collisions.
+    fn is_done(&self, _order: u32) -> bool {
+        false
+    }
+}
+
+impl Photon {
+    /// The power that it carries, as a part of what was sent \[1\].
+    pub fn weight(&self) -> f64 {
+        f64::from(self.path.weights.emission(|| 0.0).lane(0) * self.path.history.eta_scale)
+    }
+
+    /// Direction of travel.
+    pub fn dir(&self) -> Vec3 {
+        self.path.ray.dir
+    }
+
+    /// How often it has been scattered.
+    pub fn order(&self) -> u32 {
+        self.path.history.order
+    }
+}
+
+/// Launches the photon number `index` along `ray` and follows it to its end.
+pub fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64, detector: &mut impl Detector, tally: &mut Tally) {
+    let sampler = Sampler::new(SamplerKind::Independent, (index as u32, (index >> 32) as u32), 0, seed);
+    let path = Path::new(scene, ray, Wavelengths::Mono, 0.0, sampler);
+    let mut photon = Photon { at_surface: ray.origin, path, travelled: 0.0 };
+    let walk = VolPath::default();
+    tally.paths += 1;
+    loop {
+        let (weight, from, order) = (photon.weight(), photon.path.ray.origin, photon.order());
+        let event = photon.path.next_event(scene, tally);
+        let p = match &event {
+            Event::Escape => return detector.leave(&photon),
+            Event::Surface(hit) => hit.p,
+            Event::Scatter { p, .. } | Event::Absorb { p, .. } => *p,
+        };
+        photon.travelled += f64::from((p - from).length());
+        match event {
+            Event::Surface(_) => photon.at_surface = p,
+            Event::Scatter { .. } => {
+                let absorbed = weight - photon.weight();
+                detector.collide(&Collision { p, weight, absorbed, travelled: photon.travelled, order });
+            }
+            _ => detector.collide(&Collision { p, weight, absorbed: weight, travelled: photon.travelled, order }),
+        }
+        let status = photon.path.respond(event, scene, &walk, &mut Lanes::ZERO.clone(), tally);
+        if status == Status::Done || detector.is_done(photon.order()) {
+            return;
+        }
+    }
+}

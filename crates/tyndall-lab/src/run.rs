@@ -1,0 +1,117 @@
+//! Repetition: photons in batches, and means over batches with their standard errors.
+//!
+//! A photon adds to a quantity more than once (it collides many times in one bin of depth), so the error is taken from
+//! the spread between batches, which are independent: `s.e.² = Σ (x_b − x̄)² / (B (B − 1))`. Batches have a fixed size and
+//! streams of random numbers by their number, and are summed in order: figures depend on the seed and on the number of
+//! photons, and on nothing else.
+
+use rayon::prelude::*;
+use serde::Serialize;
+use tyndall::tally::Tally;
+
+/// Photons of a batch.
+pub const BATCH: u64 = 250;
+/// Batches between two looks at the clock.
+const ROUND: u64 = 64;
+
+/// A figure with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+impl Estimate {
+    /// The same in another unit.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { mean: self.mean * factor, standard_error: self.standard_error * factor.abs() }
+    }
+}
+
+/// The sums of an experiment so far.
+#[derive(Debug, Clone)]
+pub struct Sums {
+    /// Batches so far.
+    pub batches: u64,
+    /// What happened to the photons.
+    pub tally: Tally,
+    sum: Vec<f64>,
+    squares: Vec<f64>,
+}
+
+/// What a batch of photons gave: a total for each quantity.
+pub type Batch = (Vec<f64>, Tally);
+
+impl Sums {
+    fn new(quantities: usize) -> Self {
+        Self { batches: 0, tally: Tally::default(), sum: vec![0.0; quantities], squares: vec![0.0; quantities] }
+    }
+
+    fn add(&mut self, (totals, tally): &Batch) {
+        self.batches += 1;
+        self.tally = std::mem::take(&mut self.tally).merged(tally);
+        for ((sum, square), total) in self.sum.iter_mut().zip(&mut self.squares).zip(totals) {
+            let x = total / BATCH as f64;
+            *sum += x;
+            *square += x * x;
+        }
+    }
+
+    /// Photons so far.
+    pub fn photons(&self) -> u64 {
+        self.batches * BATCH
+    }
+
+    /// The mean of a quantity for each photon.
+    pub fn estimate(&self, quantity: usize) -> Estimate {
+        let n = self.batches as f64;
+        let mean = self.sum[quantity] / n;
+        let variance = (self.squares[quantity] / n - mean * mean).max(0.0) / (n - 1.0).max(1.0);
+        Estimate { mean, standard_error: if self.batches < 2 { f64::INFINITY } else { variance.sqrt() } }
+    }
+
+    /// The means of a range of quantities.
+    pub fn estimates(&self, quantities: std::ops::Range<usize>) -> Vec<Estimate> {
+        quantities.map(|quantity| self.estimate(quantity)).collect()
+    }
+}
+
+/// Whether an experiment goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// More photons.
+    GoOn,
+    /// That is enough.
+    Enough,
+}
+
+/// Runs batches, `batch(n)` being the one of number `n`, until `photons` have been launched or `look`, which sees the sums
+/// after every round, has seen enough.
+pub fn run(
+    quantities: usize,
+    photons: u64,
+    batch: impl Fn(u64) -> Batch + Sync,
+    mut look: impl FnMut(&Sums) -> Verdict,
+) -> Sums {
+    let batches = photons.div_ceil(BATCH).max(2);
+    let mut sums = Sums::new(quantities);
+    while sums.batches < batches {
+        let round = sums.batches..(sums.batches + ROUND).min(batches);
+        let done: Vec<Batch> = round.into_par_iter().map(&batch).collect();
+        for batch in &done {
+            sums.add(batch);
+        }
+        if look(&sums) == Verdict::Enough && sums.batches >= 2 {
+            break;
+        }
+    }
+    sums
+}
+
+/// The photons of a batch by their numbers.
+pub fn photons_of(batch: u64) -> std::ops::Range<u64> {
+    batch * BATCH..(batch + 1) * BATCH
+}

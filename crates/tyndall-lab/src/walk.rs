@@ -1,0 +1,84 @@
+//! A random walk in an infinite medium that does not absorb: where a photon is after its n-th free flight.
+//!
+//! With mean free path 1 and a phase function of mean cosine g, starting along +z:
+//!
+//! ```text
+//! ⟨z⟩  = (1 − gⁿ) / (1 − g)
+//! ⟨r²⟩ = 2 (n/(1 − g) − g (1 − gⁿ)/(1 − g)²)
+//! ```
+
+use tyndall::math::{Ray, Vec3};
+use tyndall::tally::Tally;
+
+use crate::photon::{Collision, Detector, launch};
+use crate::run::{Batch, Estimate, Sums, Verdict, photons_of, run};
+use crate::world::{SetupError, Substance, World};
+
+/// Moments of the place after a number of flights, in mean free paths.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Moments {
+    /// Free flights so far.
+    pub flights: u32,
+    /// Photons.
+    pub photons: u64,
+    /// Mean place along the first direction.
+    pub z: Estimate,
+    /// Mean squared distance.
+    pub r2: Estimate,
+    /// Mean squared place along the first direction.
+    pub z2: Estimate,
+}
+
+struct Recorder<'a> {
+    flights: &'a [u32],
+    totals: Vec<f64>,
+}
+
+impl Detector for Recorder<'_> {
+    fn collide(&mut self, c: &Collision) {
+        if let Some(i) = self.flights.iter().position(|n| *n == c.order + 1) {
+            let p = c.p.as_dvec3();
+            for (quantity, value) in [p.z, p.length_squared(), p.z * p.z].into_iter().enumerate() {
+                self.totals[3 * i + quantity] += c.weight * value;
+            }
+        }
+    }
+
+    fn is_done(&self, order: u32) -> bool {
+        self.flights.iter().all(|n| *n <= order)
+    }
+}
+
+/// Measures the moments after each of `flights`.
+///
+/// # Errors
+/// `g` is outside of (−1, 1), or nothing is to be measured.
+pub fn moments(
+    g: f64,
+    flights: &[u32],
+    photons: u64,
+    seed: u64,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Result<Vec<Moments>, SetupError> {
+    if flights.is_empty() || flights.contains(&0) {
+        return Err(SetupError::Missing("number of flights"));
+    }
+    let scene = World::default().build(&Substance::of_albedo(1.0, g))?;
+    let batch = |number| -> Batch {
+        let mut recorder = Recorder { flights, totals: vec![0.0; 3 * flights.len()] };
+        let mut tally = Tally::default();
+        for photon in photons_of(number) {
+            launch(&scene, Ray::new(Vec3::ZERO, Vec3::Z), photon, seed, &mut recorder, &mut tally);
+        }
+        (recorder.totals, tally)
+    };
+    let sums = run(3 * flights.len(), photons, batch, look);
+    let moment = |i: usize, n: u32| Moments {
+        flights: n,
+        photons: sums.photons(),
+        z: sums.estimate(3 * i),
+        r2: sums.estimate(3 * i + 1),
+        z2: sums.estimate(3 * i + 2),
+    };
+    Ok(flights.iter().enumerate().map(|(i, n)| moment(i, *n)).collect())
+}

@@ -1,0 +1,388 @@
+//! One of many lights, in proportion to a bound on what it can do at a point, found in a tree.
+//!
+//! Conty Estevez and Kulla 2018; Pharr et al. 2023, § 12.6.3. Eight children a node: each is weighed by
+//! `I · cos θ' · cos θ_i' / max(d², r²)`, where `I` is its intensity, `d` the distance to the middle of its bounding
+//! sphere of radius `r`, `θ'` the least angle at which any of its points can be seen from its normal, and `θ_i'` the
+//! least angle of incidence on the surface that is lit. A child is passed over only if it certainly gives no light there.
+//!
+//! Lights that are infinitely far away stand beside the tree: what they do is the same everywhere.
+
+use super::{Light, LightId, Reference, bounds::LightBounds};
+use crate::{
+    math::Vec3,
+    sampling::{discrete::Discrete, rng::mix64},
+};
+
+const WIDTH: usize = 8;
+/// Rounding of cosines: less than this below the horizon may be above it.
+const SLACK: f32 = 1e-3;
+/// No cosine counts less.
+const LEAST_COSINE: f32 = 1e-2;
+/// The least share of the lights at infinity, and of all others, where there are both: neither is known well.
+const LEAST_SHARE: f64 = 0.125;
+/// From this depth on ranges are halved, so that no tree is deep.
+const MAX_UNEVEN_DEPTH: u32 = 24;
+const BUCKETS: usize = 16;
+
+/// Eight groups of lights, side by side so that they are weighed together.
+#[derive(Debug, Clone)]
+struct Node {
+    centre: [[f32; WIDTH]; 3],
+    axis: [[f32; WIDTH]; 3],
+    radius: [f32; WIDTH],
+    cos_o: [f32; WIDTH],
+    sin_o: [f32; WIDTH],
+    cos_e: [f32; WIDTH],
+    /// 0 where the place is empty.
+    intensity: [f32; WIDTH],
+    /// 1 if the back shines too, else 0.
+    two_sided: [f32; WIDTH],
+    child: [Child; WIDTH],
+    parent: Option<Place>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Child {
+    Node(u32),
+    Light(LightId),
+}
+
+/// Where a child of a node is.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    node: u32,
+    slot: u32,
+}
+
+/// Where a light is.
+#[derive(Debug, Clone, Copy)]
+enum Home {
+    Tree(Place),
+    Infinity(u32),
+}
+
+/// Lights that are the same everywhere.
+#[derive(Debug, Clone)]
+struct Infinite {
+    lights: Vec<LightId>,
+    shares: Discrete,
+    /// What they do together [W·m⁻²].
+    total: f64,
+}
+
+/// A tree over lights, and those at infinity beside it.
+#[derive(Debug, Clone)]
+pub(super) struct Hierarchy {
+    /// The root first.
+    nodes: Vec<Node>,
+    infinite: Option<Infinite>,
+    /// By light.
+    homes: Vec<Home>,
+}
+
+impl Hierarchy {
+    /// A tree over all of `lights`.
+    pub(super) fn new(lights: &[Light]) -> Self {
+        let mut homes = vec![Home::Infinity(0); lights.len()];
+        let mut leaves = Vec::new();
+        let mut infinite = Vec::new();
+        for (index, light) in lights.iter().enumerate() {
+            let id = LightId(index as u32);
+            match LightBounds::of(light) {
+                Some(bounds) => leaves.push((bounds, id)),
+                None => {
+                    homes[index] = Home::Infinity(infinite.len() as u32);
+                    infinite.push(id);
+                }
+            }
+        }
+        // A colour may shine without luminance: everyone keeps a share of the mean.
+        let mean = leaves.iter().map(|(b, _)| f64::from(b.intensity)).sum::<f64>() / leaves.len().max(1) as f64;
+        let least = ((1e-6 * mean) as f32).max(f32::MIN_POSITIVE);
+        for (bounds, _) in &mut leaves {
+            bounds.intensity = bounds.intensity.max(least);
+        }
+        let mut tree = Self { nodes: Vec::new(), infinite: Infinite::of(infinite, lights), homes };
+        tree.build(&mut leaves);
+        tree
+    }
+
+    /// A light to sample from `from`, with its probability.
+    pub(super) fn choose(&self, from: &Reference, u: f32) -> Option<(LightId, f32)> {
+        let mut u = with_more_bits(u, from.p);
+        let mut weights = self.nodes.first().map_or([0.0; WIDTH], |root| root.weights(from));
+        let near = self.share_of_tree(&weights);
+        if u >= near {
+            let infinite = self.infinite.as_ref()?;
+            let (index, share, _) = infinite.shares.sample(((u - near) / (1.0 - near)) as f32);
+            return Some((infinite.lights[index], (1.0 - near) as f32 * share));
+        }
+        u /= near;
+        let (mut node, mut probability) = (self.nodes.first()?, near);
+        loop {
+            let (slot, share) = pick(&weights, &mut u)?;
+            probability *= share;
+            match node.child[slot] {
+                Child::Light(id) => return Some((id, probability as f32)),
+                Child::Node(next) => node = &self.nodes[next as usize],
+            }
+            weights = node.weights(from);
+        }
+    }
+
+    /// The probability with which [`Self::choose`] takes `id`.
+    pub(super) fn probability(&self, from: &Reference, id: LightId) -> f32 {
+        let mut place = match self.homes[id.0 as usize] {
+            Home::Tree(place) => place,
+            Home::Infinity(index) => {
+                let weights = self.nodes.first().map_or([0.0; WIDTH], |root| root.weights(from));
+                let share = self.infinite.as_ref().map_or(0.0, |infinite| infinite.shares.pmf(index as usize));
+                return (1.0 - self.share_of_tree(&weights)) as f32 * share;
+            }
+        };
+        let mut probability = 1.0;
+        loop {
+            let node = &self.nodes[place.node as usize];
+            let weights = node.weights(from);
+            let total = sum(&weights);
+            if total <= 0.0 {
+                return 0.0;
+            }
+            probability *= f64::from(weights[place.slot as usize]) / total;
+            match node.parent {
+                Some(parent) => place = parent,
+                None => return (probability * self.share_of_tree(&weights)) as f32,
+            }
+        }
+    }
+
+    /// How often a light of the tree is taken, from the weights at the root.
+    fn share_of_tree(&self, root: &[f32; WIDTH]) -> f64 {
+        let near = sum(root);
+        match &self.infinite {
+            None => 1.0,
+            Some(_) if near <= 0.0 => 0.0,
+            Some(infinite) => (near / (near + infinite.total)).clamp(LEAST_SHARE, 1.0 - LEAST_SHARE),
+        }
+    }
+
+    /// Splits ranges of `leaves`, the costliest first, until a node has eight children; then does the same with each.
+    fn build(&mut self, leaves: &mut [(LightBounds, LightId)]) {
+        if leaves.is_empty() {
+            return;
+        }
+        let mut stack = vec![(0..leaves.len(), None, 0)];
+        while let Some((range, parent, depth)) = stack.pop() {
+            let index = self.nodes.len() as u32;
+            if let Some(Place { node, slot }) = parent {
+                self.nodes[node as usize].child[slot as usize] = Child::Node(index);
+            }
+            let mut node = Node::empty(parent);
+            for (slot, (range, bounds)) in eight_ranges(leaves, range, depth).into_iter().enumerate() {
+                let place = Place { node: index, slot: slot as u32 };
+                node.set(slot, &bounds);
+                if range.len() == 1 {
+                    let id = leaves[range.start].1;
+                    node.child[slot] = Child::Light(id);
+                    self.homes[id.0 as usize] = Home::Tree(place);
+                } else {
+                    stack.push((range, Some(place), depth + 1));
+                }
+            }
+            self.nodes.push(node);
+        }
+    }
+}
+
+impl Infinite {
+    fn of(ids: Vec<LightId>, lights: &[Light]) -> Option<Self> {
+        let weights: Vec<f64> = ids.iter().map(|id| f64::from(lights[id.0 as usize].importance(Vec3::ZERO))).collect();
+        let total: f64 = weights.iter().sum();
+        // A colour may shine without luminance: everyone keeps a share of the mean.
+        let least = 1e-6 * total / weights.len().max(1) as f64 + f64::MIN_POSITIVE;
+        let shares = Discrete::from_f64(weights.iter().map(|w| w + least))?;
+        Some(Self { lights: ids, shares, total })
+    }
+}
+
+impl Node {
+    fn empty(parent: Option<Place>) -> Self {
+        const ZERO: [f32; WIDTH] = [0.0; WIDTH];
+        Self {
+            centre: [ZERO; 3],
+            axis: [ZERO; 3],
+            radius: ZERO,
+            cos_o: ZERO,
+            sin_o: ZERO,
+            cos_e: ZERO,
+            intensity: ZERO,
+            two_sided: ZERO,
+            child: [Child::Node(0); WIDTH],
+            parent,
+        }
+    }
+
+    fn set(&mut self, slot: usize, group: &LightBounds) {
+        let centre = group.bounds.centre();
+        for axis in 0..3 {
+            self.centre[axis][slot] = centre[axis];
+            self.axis[axis][slot] = group.axis[axis];
+        }
+        // The differences of coordinates are rounded where they are taken.
+        self.radius[slot] = 0.500_01 * group.bounds.extent().length() + 1e-6 * centre.abs().max_element();
+        (self.sin_o[slot], self.cos_o[slot]) = group.theta_o.sin_cos();
+        self.cos_e[slot] = group.theta_e.cos();
+        self.intensity[slot] = group.intensity;
+        self.two_sided[slot] = f32::from(u8::from(group.two_sided));
+    }
+
+    /// Bounds on what the children do at a point: see the head of this file.
+    #[inline]
+    fn weights(&self, from: &Reference) -> [f32; WIDTH] {
+        let normal = from.normal.unwrap_or(Vec3::ZERO);
+        let is_volume = from.normal.is_none();
+        std::array::from_fn(|i| {
+            let x = self.centre[0][i] - from.p.x;
+            let y = self.centre[1][i] - from.p.y;
+            let z = self.centre[2][i] - from.p.z;
+            let r2 = self.radius[i] * self.radius[i];
+            let d2 = x * x + y * y + z * z;
+            let inside = d2 <= r2;
+            let by_d = 1.0 / d2.max(f32::MIN_POSITIVE).sqrt();
+            let sin_b = (self.radius[i] * by_d).min(1.0);
+            let cos_b = (1.0 - sin_b * sin_b).sqrt();
+            let along = -(self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z) * by_d;
+            let cos_w = if self.two_sided[i] > 0.0 { along.abs() } else { along }.clamp(-1.0, 1.0);
+            let sin_w = (1.0 - cos_w * cos_w).sqrt();
+            let (cos_x, sin_x) = less((cos_w, sin_w), (self.cos_o[i], self.sin_o[i]));
+            let (cos_out, _) = less((cos_x, sin_x), (cos_b, sin_b));
+            let cos_n = ((normal.x * x + normal.y * y + normal.z * z) * by_d).clamp(-1.0, 1.0);
+            let (cos_in, _) = less((cos_n, (1.0 - cos_n * cos_n).sqrt()), (cos_b, sin_b));
+            let leaves = if inside { 1.0 } else { cos_out };
+            let arrives = if inside | is_volume { 1.0 } else { cos_in };
+            let dark = (leaves < self.cos_e[i] - SLACK) | (arrives < -SLACK);
+            let cosines = leaves.max(LEAST_COSINE) * arrives.max(LEAST_COSINE);
+            let weight = self.intensity[i] * cosines / d2.max(r2).max(f32::MIN_POSITIVE);
+            // Never infinite at a light, and never nothing where a light is merely far.
+            let weight = if self.intensity[i] > 0.0 { weight.clamp(f32::MIN_POSITIVE, 1e30) } else { 0.0 };
+            if dark { 0.0 } else { weight }
+        })
+    }
+}
+
+/// Cosine and sine of `max(a − b, 0)`, of angles in [0, π].
+#[inline(always)]
+fn less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
+    let within = cos_a > cos_b;
+    let (cos, sin) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
+    if within { (1.0, 0.0) } else { (cos, sin) }
+}
+
+fn sum(weights: &[f32; WIDTH]) -> f64 {
+    weights.iter().map(|w| f64::from(*w)).sum()
+}
+
+/// A place in proportion to its weight, and its share; what is left of `u` is again uniform.
+#[inline]
+fn pick(weights: &[f32; WIDTH], u: &mut f64) -> Option<(usize, f64)> {
+    let total = sum(weights);
+    let mut rest = *u * total;
+    let mut found = None;
+    for (slot, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+        let weight = f64::from(*weight);
+        found = Some((slot, weight / total));
+        *u = (rest / weight).clamp(0.0, 1.0 - f64::EPSILON);
+        if rest < weight {
+            break;
+        }
+        rest -= weight;
+    }
+    found
+}
+
+/// The 24 bits of `u` would run out in a tree of millions: the place decides the next 29, which are as good as random
+/// over all the places of a render.
+fn with_more_bits(u: f32, p: Vec3) -> f64 {
+    let word = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
+    let bits = mix64(mix64(word(p.x, p.y)) ^ word(p.z, u)) >> 35;
+    (f64::from(u) + bits as f64 * (-53f64).exp2()).min(1.0 - f64::EPSILON)
+}
+
+type Range = std::ops::Range<usize>;
+
+/// Up to eight parts of a range, with what bounds them.
+fn eight_ranges(leaves: &mut [(LightBounds, LightId)], range: Range, depth: u32) -> Vec<(Range, LightBounds)> {
+    let mut parts = vec![(range.clone(), bounds_of(&leaves[range]))];
+    while parts.len() < WIDTH {
+        let splittable = parts.iter().enumerate().filter(|(_, (range, _))| range.len() > 1);
+        let costliest = splittable.max_by(|a, b| a.1.1.cost().total_cmp(&b.1.1.cost()));
+        let Some((index, _)) = costliest else { break };
+        let (range, _) = parts.swap_remove(index);
+        let middle = range.start + split(&mut leaves[range.clone()], depth);
+        for part in [range.start..middle, middle..range.end] {
+            let bounds = bounds_of(&leaves[part.clone()]);
+            parts.push((part, bounds));
+        }
+    }
+    // In the order of the leaves, which are near in space where they are near in order: stratified numbers stay so.
+    parts.sort_unstable_by_key(|(range, _)| range.start);
+    parts
+}
+
+/// The bounds of a range that is not empty.
+fn bounds_of(leaves: &[(LightBounds, LightId)]) -> LightBounds {
+    leaves[1..].iter().fold(leaves[0].0, |all, (bounds, _)| all.union(*bounds))
+}
+
+/// Sorts leaves into two parts that are not empty, along the longest side of the box of their middles, where the sum of
+/// the costs is least; where there is nothing to choose, halves them.
+fn split(leaves: &mut [(LightBounds, LightId)], depth: u32) -> usize {
+    let half = leaves.len() / 2;
+    let middles = crate::math::Bounds::of(leaves.iter().map(|(b, _)| b.bounds.centre()));
+    let extent = middles.extent();
+    let axis = extent.max_position();
+    let place = |b: &LightBounds| (b.bounds.centre()[axis] - middles.min[axis]) / extent[axis];
+    if extent[axis] <= 0.0 {
+        return half;
+    }
+    if depth > MAX_UNEVEN_DEPTH || !extent[axis].is_finite() {
+        leaves
+            .select_nth_unstable_by(half, |(a, _), (b, _)| a.bounds.centre()[axis].total_cmp(&b.bounds.centre()[axis]));
+        return half;
+    }
+    let bucket = |b: &LightBounds| ((place(b) * BUCKETS as f32) as usize).min(BUCKETS - 1);
+    let mut buckets: [Option<LightBounds>; BUCKETS] = [None; BUCKETS];
+    for (bounds, _) in leaves.iter() {
+        join(&mut buckets[bucket(bounds)], Some(*bounds));
+    }
+    let mut right = [None; BUCKETS];
+    (1..BUCKETS).rev().fold(None, |mut sum, i| {
+        join(&mut sum, buckets[i]);
+        right[i] = sum;
+        sum
+    });
+    // The first bucket and the last are never empty.
+    let (mut left, mut best) = (buckets[0], (f32::INFINITY, 1));
+    for i in 1..BUCKETS {
+        let cost = left.map_or(0.0, |b| b.cost()) + right[i].map_or(0.0, |b: LightBounds| b.cost());
+        if cost < best.0 {
+            best = (cost, i);
+        }
+        join(&mut left, buckets[i]);
+    }
+    let mut middle = 0;
+    for i in 0..leaves.len() {
+        if bucket(&leaves[i].0) < best.1 {
+            leaves.swap(i, middle);
+            middle += 1;
+        }
+    }
+    middle
+}
+
+fn join(sum: &mut Option<LightBounds>, more: Option<LightBounds>) {
+    *sum = match (*sum, more) {
+        (Some(a), Some(b)) => Some(a.union(b)),
+        (a, b) => a.or(b),
+    };
+}

@@ -1,0 +1,174 @@
+//! The choice among many lights, over random scenes: probabilities are those of the draws, and no light that shines
+//! somewhere is passed over there.
+
+use testkit::{Family, Stream, chi_square};
+use tyndall::light::{
+    AreaLight, ConstantEnvironment, Distant, EmitterShape, Falloff, Light, LightId, LightTable, PointLight, Reference,
+    SpotLight,
+};
+use tyndall::math::{Vec2, Vec3};
+use tyndall::sampling::warp;
+use tyndall::spectrum::{Spectrum, Wavelengths};
+
+fn next_2d(stream: &mut Stream) -> Vec2 {
+    Vec2::new(stream.next_f32(), stream.next_f32())
+}
+
+fn next_3d(stream: &mut Stream) -> Vec3 {
+    Vec3::new(stream.next_f32(), stream.next_f32(), stream.next_f32())
+}
+
+fn next_direction(stream: &mut Stream) -> Vec3 {
+    warp::uniform_sphere(next_2d(stream))
+}
+
+fn point(position: Vec3, luminance: f32) -> Light {
+    Light::Point(PointLight { position, intensity: Spectrum::constant(luminance), luminance })
+}
+
+fn area(shape: EmitterShape, luminance: f32, two_sided: bool) -> Light {
+    Light::Area(AreaLight { shape, radiance: Spectrum::constant(luminance), luminance, two_sided, opacity: 1.0 })
+}
+
+fn triangle(a: Vec3, e1: Vec3, e2: Vec3) -> EmitterShape {
+    EmitterShape::Triangle { a, e1, e2, ng: e1.cross(e2).normalize_or_zero() }
+}
+
+/// A light of any kind near `at`.
+fn any_light(stream: &mut Stream, at: Vec3) -> Light {
+    let luminance = 0.01 + stream.next_f32().powi(8) * 100.0;
+    let (d, e) = (next_direction(stream), next_direction(stream));
+    match (stream.next_f32() * 8.0) as u32 {
+        0 => point(at, luminance),
+        1 => Light::Spot(SpotLight {
+            position: at,
+            axis: d,
+            intensity: Spectrum::constant(luminance),
+            luminance,
+            cos_inner: 0.9,
+            cos_outer: -0.2 + stream.next_f32(),
+            falloff: Falloff::LinearAngle,
+        }),
+        2 => area(EmitterShape::Sphere { centre: at, radius: 0.01, inward: e.x > 0.0 }, luminance, false),
+        3 => area(EmitterShape::Disk { centre: at, ng: d, radius: 0.03, inner: 0.01 }, luminance, e.x > 0.0),
+        _ => area(triangle(at, d * 0.1, e * 0.05), luminance, e.x > 0.0),
+    }
+}
+
+/// Scenes of many lights, from orderly to degenerate.
+fn scenes() -> Vec<(&'static str, Vec<Light>)> {
+    let mut stream = Stream::new(7);
+    let s = &mut stream;
+    let scattered = (0..200)
+        .map(|_| {
+            let at = next_3d(s);
+            any_light(s, at)
+        })
+        .collect::<Vec<_>>();
+    let mut with_skies = scattered.clone();
+    with_skies.push(Light::Constant(ConstantEnvironment { radiance: Spectrum::constant(0.3), luminance: 0.3 }));
+    let sun = |towards| Light::Distant(Distant { towards, irradiance: Spectrum::constant(2.0), luminance: 2.0 });
+    with_skies.extend([sun(Vec3::Z), sun(Vec3::X)]);
+    let ceiling = (0..300).map(|_| {
+        let at = Vec3::new(s.next_f32(), s.next_f32(), 1.0);
+        area(triangle(at, Vec3::Y * 0.02, Vec3::X * 0.02), 1.0, false)
+    });
+    let ceiling = ceiling.collect();
+    let line = (0..40).map(|i| point(Vec3::X * i as f32, 1.0 + i as f32)).collect();
+    let heap = (0..40).map(|i| point(Vec3::ONE, 1.0 + i as f32)).collect();
+    let needles = (0..40).map(|i| area(triangle(Vec3::Y * i as f32, Vec3::X, Vec3::X), 1.0, false)).collect();
+    let suns = (0..40).map(|i| sun(Vec3::new(i as f32, 1.0, 2.0).normalize())).collect();
+    let few = (0..9)
+        .map(|_| {
+            let at = next_3d(s);
+            any_light(s, at)
+        })
+        .collect();
+    vec![
+        ("scattered", scattered),
+        ("with skies", with_skies),
+        ("ceiling", ceiling),
+        ("line", line),
+        ("heap", heap),
+        ("needles", needles),
+        ("suns", suns),
+        ("few", few),
+    ]
+}
+
+/// Places among the lights, far away, on a light; on surfaces and in media.
+fn references(stream: &mut Stream) -> Vec<Reference> {
+    let mut all = vec![
+        Reference { p: Vec3::ONE, normal: None },
+        Reference { p: Vec3::ONE, normal: Some(Vec3::Z) },
+        Reference { p: Vec3::new(1e6, -1e6, 3.0), normal: None },
+        Reference { p: Vec3::new(0.5, 0.5, 1.0), normal: Some(-Vec3::Z) },
+    ];
+    for _ in 0..6 {
+        let p = next_3d(stream) * 1.5 - 0.25;
+        all.push(Reference { p, normal: None });
+        all.push(Reference { p, normal: Some(next_direction(stream)) });
+    }
+    all
+}
+
+/// The histogram of the lights drawn is that of the probabilities; what they leave to 1 is how often none is drawn.
+#[test]
+fn lights_are_drawn_as_often_as_their_probabilities_say() {
+    let mut family = Family::new("choice of lights", 0.01);
+    let mut stream = Stream::new(8);
+    for (name, lights) in scenes() {
+        let count = lights.len();
+        let table = LightTable::new(lights);
+        for from in references(&mut stream) {
+            let mut expected: Vec<f64> =
+                (0..count).map(|i| f64::from(table.probability(&from, LightId(i as u32)))).collect();
+            let total: f64 = expected.iter().sum();
+            assert!(total < 1.0 + 1e-5, "{name} from {from:?}: probabilities sum to {total}");
+            expected.push((1.0 - total).max(0.0));
+            let mut observed = vec![0u64; count + 1];
+            for _ in 0..20_000 {
+                match table.choose(&from, stream.next_f32()) {
+                    Some((id, probability)) => {
+                        let p = table.probability(&from, id);
+                        assert!((probability / p - 1.0).abs() < 1e-5, "{name} from {from:?}: {probability}, {p}");
+                        observed[id.0 as usize] += 1;
+                    }
+                    None => observed[count] += 1,
+                }
+            }
+            let name = format!("{name} from {from:?}");
+            // Where one outcome has all but a few of the draws there is no second cell for χ²: their number is Poisson.
+            let (sure, most) = expected.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+            let rest = (1.0 - most) * 20_000.0;
+            if rest > 20.0 {
+                family.check(&name, chi_square(&observed, &expected));
+            } else {
+                assert!((20_000 - observed[sure]) as f64 <= rest + 6.0 * rest.sqrt() + 6.0, "{name}: {observed:?}");
+            }
+        }
+    }
+    family.finish();
+}
+
+/// Next event estimation needs every light that could reach the point.
+#[test]
+fn every_light_that_shines_at_a_point_has_a_chance_there() {
+    let mut stream = Stream::new(9);
+    let mut seen = 0;
+    for (name, lights) in scenes() {
+        let table = LightTable::new(lights.clone());
+        for _ in 0..300 {
+            for from in references(&mut stream) {
+                let index = ((stream.next_f32() * lights.len() as f32) as usize).min(lights.len() - 1);
+                let Some(s) = lights[index].sample(&from, next_2d(&mut stream), &Wavelengths::Rgb) else { continue };
+                if from.normal.is_none_or(|n| n.dot(s.dir) > 0.0) {
+                    let p = table.probability(&from, LightId(index as u32));
+                    assert!(p > 0.0 && p <= 1.0, "{name}: light {index} from {from:?} shines, and has {p}");
+                    seen += 1;
+                }
+            }
+        }
+    }
+    assert!(seen > 10_000, "{seen}");
+}
