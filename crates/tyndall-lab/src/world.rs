@@ -159,7 +159,7 @@ impl World {
             }
         });
         let material = MaterialId(self.materials.len() as u32 - 1);
-        self.objects.push(Object { name: String::new(), material, interface, emission: Emission::None });
+        self.objects.push(Object { name: String::new(), material, interface, emission: Emission::None, body: None });
         Ok(())
     }
 

@@ -9,6 +9,9 @@ mod shapes;
 mod spectra;
 mod textures;
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::HashMap;
 
 use glam::DMat4;

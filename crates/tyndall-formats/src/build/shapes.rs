@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use tyndall::{
     light::{AreaLight, EmitterShape, Light, LightId},
     math::{Vec2, Vec3},
-    medium,
+    medium::{self, BodyId, Member},
     scene::{Emission, Object},
     shape::{Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere},
 };
 
 use super::{Builder, material_id, medium_id};
 use crate::{
-    desc::{AreaLightDesc, FileRef, GroupDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
+    desc::{AreaLightDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
     error::SceneError,
     mesh::{MeshError, TriangleMesh, read_obj, read_ply, read_serialized},
 };
@@ -151,10 +151,47 @@ impl<'a> Builder<'a> {
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
+        let body = BodyId(gathered.objects.len() as u32);
+        let body = self.priority(desc)?.map(|priority| Member { body, priority });
         for object in added {
-            self.bind(gathered, desc, object)?;
+            self.bind(gathered, desc, object, body)?;
         }
         Some(())
+    }
+
+    /// The priority of a body: of something that light can enter, that does not shine, and whose outside is left to others.
+    fn priority(&mut self, desc: &ShapeDesc) -> Option<Option<i32>> {
+        let Some(priority) = desc.priority else { return Some(None) };
+        let kind = self.desc.material(desc.material.value).map(|material| &material.kind);
+        if !matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::Interface) | None) {
+            return self.fail(
+                SceneError::at(priority.span, "only a body that light can enter has a priority")
+                    .help("leave it out, or use a dielectric material or none (\"interface\", \"null\")")
+                    .related(desc.material.span, "its material"),
+            );
+        }
+        if let Some(opacity) = &desc.opacity {
+            return self.fail(
+                SceneError::at(priority.span, "a body with a priority has no holes")
+                    .help("leave out the priority, or the opacity")
+                    .related(opacity.span, "its opacity"),
+            );
+        }
+        if let Some(light) = &desc.emission {
+            return self.fail(
+                SceneError::at(priority.span, "the surface of a body with a priority cannot shine")
+                    .help("leave out the priority, or the light")
+                    .related(light.span, "its light"),
+            );
+        }
+        if let Some(interface) = desc.interface.filter(|interface| interface.outside.is_some()) {
+            return self.fail(
+                SceneError::at(interface.span, "what is outside of a body with a priority, the other bodies say")
+                    .help("name the medium inside only")
+                    .related(priority.span, "its priority"),
+            );
+        }
+        Some(Some(priority.value))
     }
 
     /// Material, media and light of an object that was just added.
@@ -163,6 +200,7 @@ impl<'a> Builder<'a> {
         gathered: &mut Gathered<'a>,
         desc: &'a ShapeDesc,
         object: Result<ObjectId, ShapeError>,
+        body: Option<Member>,
     ) -> Option<()> {
         let object = match object {
             Ok(object) => object,
@@ -180,6 +218,7 @@ impl<'a> Builder<'a> {
                 outside: i.outside.map(medium_id),
             }),
             emission: Emission::None,
+            body,
         });
         if let Some(emission) = &desc.emission {
             let opacity = match desc.opacity.as_ref().map(|opacity| (opacity.value.number(), opacity.span)) {

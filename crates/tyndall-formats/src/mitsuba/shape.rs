@@ -50,6 +50,9 @@ impl<'t> Builder<'t> {
         let kind = self.shape_kind(plugin, &mut object, &mut to_world)?;
         let report = &mut self.report;
         let reverse_orientation = object.flag("flip_normals", false, report);
+        // tyndall's own.
+        let priority = object.integer("priority", i32::MIN.into(), report);
+        let priority = priority.map(|p| p.map(|p| i32::try_from(p).unwrap_or(i32::MAX)));
         object.ignore(&["silhouette_sampling_weight"], "silhouettes are not sampled", report);
         object.finish(report);
         let name = element.attribute("id").map(|id| id.value.clone());
@@ -63,6 +66,7 @@ impl<'t> Builder<'t> {
             opacity: None,
             emission,
             interface,
+            priority,
         })
     }
 
