@@ -11,7 +11,7 @@
 #![allow(clippy::print_stdout)] // an example talks
 
 use tyndall::{
-    camera::Camera,
+    camera::{Camera, CameraModel, Perspective, View},
     film::Filter,
     integrator::VolPath,
     light::{ConstantEnvironment, Light, LightTable},
@@ -37,10 +37,12 @@ fn ball(albedo: f32) -> Result<Scene, Box<dyn std::error::Error>> {
         phase: Phase::henyey_greenstein(0.5)?,
     };
     let interface = Some(MediumInterface { inside: Some(MediumId(0)), outside: None });
-    let object = Object { name: "ball".into(), material: MaterialId(0), interface, emission: Emission::None };
+    let object =
+        Object { name: "ball".into(), material: MaterialId(0), interface, emission: Emission::None, body: None };
     let window = [-0.001, 0.001, -0.001, 0.001]; // looks along +z, so narrowly that it is one ray
     let (to_world, filter) = (Transform::IDENTITY, Filter::default());
-    let camera = Camera { to_world, window, width: 1, height: 1, filter, exposure: 1.0, medium: None };
+    let view = View { to_world, model: CameraModel::Perspective(Perspective::pinhole(window)) };
+    let camera = Camera { view, width: 1, height: 1, filter, exposure: 1.0, medium: None, layers: Vec::new() };
     let sky = Light::Constant(ConstantEnvironment { radiance: Spectrum::illuminant_rgb([1.0; 3]), luminance: 1.0 });
     let lights = LightTable::new(vec![sky]);
     Ok(Scene::new(ColorMode::Rgb, camera, builder.build()?, vec![object], vec![Material::Null], vec![medium], lights))

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | a definition is not used | its name occurs nowhere else |
 //! | a body is a thousand mean free paths across, or a thousandth of one | its box and its medium's `σ_t` |
+//! | a surface that bounds a medium or a body has edges | the edges of its faces |
 //! | a light cannot be sampled from inside a medium | it has no size, and every way out leads through polished glass |
 //!
 //! They are [`SceneError`]s of severity [`Warning`](crate::error::Severity::Warning), with the place in the file.
@@ -11,10 +12,10 @@
 use std::collections::HashSet;
 
 use tyndall::scene::Scene;
-use tyndall::shape::ObjectId;
+use tyndall::shape::{ObjectId, Seams};
 
 use crate::build::made::parts;
-use crate::desc::{Coefficients, LightKind, MaterialKind, MediumId, SceneDesc, ShapeDesc};
+use crate::desc::{Coefficients, LightKind, MaterialKind, MediumId, SceneDesc, ShapeDesc, ShapeKind};
 use crate::error::SceneError;
 
 /// A body larger than this many mean free paths, or smaller than its inverse, is told of.
@@ -26,6 +27,7 @@ pub fn warnings(desc: &SceneDesc, scene: &Scene) -> Vec<SceneError> {
     unused(desc, &mut warnings);
     media_out_of_scale(desc, scene, &mut warnings);
     lights_behind_glass(desc, scene, &mut warnings);
+    open_bodies(desc, scene, &mut warnings);
     warnings
 }
 
@@ -127,6 +129,32 @@ fn lights_behind_glass(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<Scene
     }
 }
 
+/// Surfaces that bound a medium or a body and have edges: a path around the edge changes sides without a word.
+fn open_bodies(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneError>) {
+    let mut first = 0;
+    for shape in shapes(desc) {
+        // Objects are numbered in this order; each patch is one.
+        let count = match &shape.kind {
+            ShapeKind::BilinearMesh(patches) => patches.indices.len() as u32,
+            _ => 1,
+        };
+        let objects: Vec<_> = (first..first + count).map(ObjectId).collect();
+        first += count;
+        let bounds = shape.priority.is_some() || shape.interface.is_some_and(|i| i.inside != i.outside);
+        if !bounds || scene.geometry.is_closed(&objects) {
+            continue;
+        }
+        let Seams { edges, open } = scene.geometry.seams(&objects);
+        warnings.push(
+            SceneError::warning(
+                shape.span,
+                format!("this surface bounds a medium and is not closed: {open} of {edges} edges are open"),
+            )
+            .help("behind it is what the last surface that was crossed says; close it, so that nothing gets around it"),
+        );
+    }
+}
+
 /// Whether the surface has nothing but mirror images and refractions of what is around it.
 fn is_polished(desc: &SceneDesc, shape: &ShapeDesc) -> bool {
     match desc.material(shape.material.value).map(|material| &material.kind) {
@@ -182,6 +210,21 @@ mod tests {
         assert!(ball("10000").contains("is 2.0e4 mean free paths across"), "{}", ball("10000"));
         assert!(ball("0.0001").contains("is only 2.0e-4 mean free paths across"), "{}", ball("0.0001"));
         assert_eq!(ball("10"), "");
+    }
+
+    /// Two triangles have six edges, of which they share one; a disk is all edge; a sphere has none.
+    #[test]
+    fn an_open_surface_with_a_medium_behind_it_is_told() {
+        let shape = |words: &str| {
+            warned(&format!(r#"MakeNamedMedium "m" "string type" "homogeneous" Material "interface" {words}"#))
+        };
+        let square = r#"Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 1 1 0 0 1 0] "integer indices" [0 1 2 0 2 3]"#;
+        let told = shape(&format!(r#"MediumInterface "m" "" {square}"#));
+        assert!(told.contains("4 of 6 edges are open"), "{told}");
+        let disk = shape(r#"MediumInterface "m" "" Shape "disk" "integer priority" 1"#);
+        assert!(disk.contains("1 of 1 edges are open"), "{disk}");
+        assert!(!shape(r#"MediumInterface "m" "" Shape "sphere""#).contains("edges"));
+        assert!(!shape(&format!(r#"MediumInterface "m" "m" {square}"#)).contains("edges"));
     }
 
     #[test]

@@ -118,6 +118,7 @@ fn mitsuba_scene(kind: &Kind, params: &str) -> String {
     let inside = match *directive {
         "film" | "sampler" => format!("<sensor type=\"perspective\">{this}</sensor>"),
         "rfilter" => format!("<sensor type=\"perspective\"><film type=\"hdrfilm\">{this}</film></sensor>"),
+        "sensor" if *name == "irradiancemeter" => format!("<shape type=\"sphere\">{this}</shape>"),
         "areaemitter" => format!("<shape type=\"sphere\">{this}</shape>"),
         "phase" => format!("<medium type=\"homogeneous\">{this}</medium>"),
         "volume" => {

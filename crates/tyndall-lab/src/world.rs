@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use tyndall::{
-    camera::Camera,
+    camera::{Camera, CameraModel, Perspective, View},
     film::Filter,
     light::LightTable,
     material::{Index, Material, Roughness},
@@ -159,7 +159,7 @@ impl World {
             }
         });
         let material = MaterialId(self.materials.len() as u32 - 1);
-        self.objects.push(Object { name: String::new(), material, interface, emission: Emission::None });
+        self.objects.push(Object { name: String::new(), material, interface, emission: Emission::None, body: None });
         Ok(())
     }
 
@@ -167,13 +167,16 @@ impl World {
     pub(crate) fn build(mut self, around: &Substance) -> Result<Scene, SetupError> {
         let medium = self.medium(around)?;
         let camera = Camera {
-            to_world: Transform::IDENTITY,
-            window: [-1.0, 1.0, -1.0, 1.0],
+            view: View {
+                to_world: Transform::IDENTITY,
+                model: CameraModel::Perspective(Perspective::pinhole([-1.0, 1.0, -1.0, 1.0])),
+            },
             width: 1,
             height: 1,
             filter: Filter::default(),
             exposure: 1.0,
             medium,
+            layers: Vec::new(),
         };
         let geometry = self.builder.build()?;
         let lights = LightTable::new(Vec::new());

@@ -9,6 +9,7 @@
 
 pub mod bsdf;
 pub mod camera;
+pub mod feature;
 pub mod film;
 pub mod integrator;
 pub mod lecture;

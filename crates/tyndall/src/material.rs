@@ -167,12 +167,7 @@ impl Material {
                 };
                 alpha.shape(bsdf).tinted(tint.eval(at, wavelengths), Lanes::ONE).on(*sides)
             }
-            Self::Dielectric { eta, alpha, reflection_tint, transmission_tint } => {
-                let [x, y] = alpha.at(at);
-                alpha
-                    .shape(Bsdf::dielectric(eta.at(wavelengths, hero), x, y))
-                    .tinted(reflection_tint.eval(at, wavelengths), transmission_tint.eval(at, wavelengths))
-            }
+            Self::Dielectric { eta, .. } => self.bsdf_between(eta.at(wavelengths, hero), at, wavelengths),
             Self::ThinDielectric { eta, reflection_tint, transmission_tint } => {
                 Bsdf::thin_dielectric(eta.lanes(wavelengths))
                     .tinted(reflection_tint.eval(at, wavelengths), transmission_tint.eval(at, wavelengths))
@@ -186,16 +181,44 @@ impl Material {
         }
     }
 
+    /// The BSDF of the boundary between two bodies, `eta` the index inside over that outside: with the roughness and the
+    /// tints of a dielectric, or smooth and clear.
+    #[inline]
+    pub fn bsdf_between(&self, eta: f32, at: &TexturePoint, wavelengths: &Wavelengths) -> Bsdf {
+        let Self::Dielectric { alpha, reflection_tint, transmission_tint, .. } = self else {
+            return Bsdf::dielectric(eta, 0.0, 0.0);
+        };
+        let [x, y] = alpha.at(at);
+        alpha
+            .shape(Bsdf::dielectric(eta, x, y))
+            .tinted(reflection_tint.eval(at, wavelengths), transmission_tint.eval(at, wavelengths))
+    }
+
+    /// The index of a dielectric.
+    pub fn index(&self) -> Option<&Index> {
+        match self {
+            Self::Dielectric { eta, .. } => Some(eta),
+            _ => None,
+        }
+    }
+
     /// Whether wavelengths part here, so that a path can go on with one only.
     #[inline]
     pub fn disperses(&self) -> bool {
-        matches!(self, Self::Dielectric { eta: Index::Glass(_) | Index::Table(_), .. })
+        matches!(self, Self::Dielectric { eta, .. } if eta.disperses())
     }
 }
 
 impl Index {
+    /// Whether wavelengths differ.
     #[inline]
-    fn at(&self, wavelengths: &Wavelengths, hero: usize) -> f32 {
+    pub fn disperses(&self) -> bool {
+        matches!(self, Self::Glass(_) | Self::Table(_))
+    }
+
+    /// Its value [1] at the wavelength of a lane.
+    #[inline]
+    pub fn at(&self, wavelengths: &Wavelengths, hero: usize) -> f32 {
         match self {
             Self::Constant(eta) => *eta,
             Self::Glass(glass) => glass.eta(wavelengths.hero(hero)),

@@ -8,7 +8,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use rayon::prelude::*;
 
 use crate::{
-    film::{Crop, Film, Pixel},
+    camera::CameraRay,
+    feature::FirstHit,
+    film::{Cell, Crop, Film, Pixel},
     integrator::Integrator,
     sampling::{Sampler, SamplerKind},
     scene::Scene,
@@ -80,6 +82,8 @@ pub struct Rendering {
 struct Tile {
     area: Crop,
     pixels: Vec<Pixel>,
+    /// Layer by layer of a pixel, pixel by pixel.
+    cells: Vec<Cell>,
     tally: Tally,
 }
 
@@ -87,8 +91,9 @@ struct Tile {
 pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, observer: &dyn Observer) -> Rendering {
     let camera = &scene.camera;
     let mut film =
-        Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)));
-    let mut tiles = tiles_of(film.crop);
+        Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)))
+            .with_layers(&camera.layers);
+    let mut tiles = tiles_of(film.crop, camera.layers.len());
     let total = film.pixels.len() as u64 * u64::from(settings.spp);
     let samples = AtomicU64::new(0);
     let stopped = AtomicBool::new(false);
@@ -128,7 +133,7 @@ fn passes(spp: u32) -> impl Iterator<Item = std::ops::Range<u32>> {
     })
 }
 
-fn tiles_of(crop: Crop) -> Vec<Tile> {
+fn tiles_of(crop: Crop, layers: usize) -> Vec<Tile> {
     let mut tiles = Vec::new();
     // Tiles lie on a grid fixed to the image, not to the crop.
     for y in crop.min.1 / TILE..crop.max.1.div_ceil(TILE) {
@@ -139,7 +144,8 @@ fn tiles_of(crop: Crop) -> Vec<Tile> {
             };
             let pixels = vec![Pixel::default(); (area.width() * area.height()) as usize];
             if !pixels.is_empty() {
-                tiles.push(Tile { area, pixels, tally: Tally::default() });
+                let cells = vec![Cell::default(); pixels.len() * layers];
+                tiles.push(Tile { area, pixels, cells, tally: Tally::default() });
             }
         }
     }
@@ -148,12 +154,19 @@ fn tiles_of(crop: Crop) -> Vec<Tile> {
 
 fn copy_tiles(tiles: &[Tile], film: &mut Film) {
     let crop = film.crop;
+    let layers = film.layers.len();
     for tile in tiles {
         let columns = tile.area.width() as usize;
         for (row, source) in tile.pixels.chunks(columns).enumerate() {
             let y = tile.area.min.1 - crop.min.1 + row as u32;
             let start = (y * crop.width() + (tile.area.min.0 - crop.min.0)) as usize;
             film.pixels[start..start + columns].copy_from_slice(source);
+            for (i, layer) in film.layers.iter_mut().enumerate() {
+                let cells = tile.cells.iter().skip(row * columns * layers + i).step_by(layers);
+                for (to, from) in layer.cells[start..start + columns].iter_mut().zip(cells) {
+                    *to = *from;
+                }
+            }
         }
     }
 }
@@ -166,10 +179,12 @@ fn render_tile(
     tile: &mut Tile,
 ) {
     let columns = tile.area.width();
+    let layers = scene.camera.layers.len();
     for (i, pixel) in tile.pixels.iter_mut().enumerate() {
         let (x, y) = (tile.area.min.0 + i as u32 % columns, tile.area.min.1 + i as u32 / columns);
         for index in samples.clone() {
-            let (radiance, value) = sample_pixel(scene, integrator, settings, (x, y), index, &mut tile.tally);
+            let cells = &mut tile.cells[i * layers..(i + 1) * layers];
+            let (radiance, value) = sample_pixel(scene, integrator, settings, (x, y), index, &mut tile.tally, cells);
             if radiance.is_finite() && radiance.min_lane() >= 0.0 {
                 pixel.add(value);
             } else {
@@ -181,7 +196,8 @@ fn render_tile(
     }
 }
 
-/// One sample of one pixel: radiance, and linear sRGB (which may be negative for a single wavelength).
+/// One sample of one pixel: radiance, and linear sRGB (which may be negative for a single wavelength, and where the
+/// filter is).
 fn sample_pixel(
     scene: &Scene,
     integrator: &dyn Integrator,
@@ -189,12 +205,23 @@ fn sample_pixel(
     pixel: (u32, u32),
     index: u32,
     tally: &mut Tally,
+    cells: &mut [Cell],
 ) -> (Lanes, [f32; 3]) {
     let mut sampler = Sampler::new(settings.sampler, pixel, index, settings.seed);
-    let ray = scene.camera.sample_ray(pixel, sampler.camera());
+    let seen @ CameraRay { ray, weight } = scene.camera.sample_ray(pixel, sampler.camera());
     let [u_wavelength, u_hero] = sampler.wavelength();
     let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
     tally.paths += 1;
+    if weight == 0.0 {
+        return (Lanes::ZERO, [0.0; 3]); // the lens stopped it
+    }
     let radiance = integrator.li(scene, ray, wavelengths, u_hero, &mut sampler, tally);
-    (radiance, film_rgb(radiance, &wavelengths).map(|v| v * scene.camera.exposure))
+    if !cells.is_empty() {
+        let first = FirstHit::of(scene, seen);
+        for (cell, layer) in cells.iter_mut().zip(&scene.camera.layers) {
+            cell.add(first.sample(layer.feature, &wavelengths, &mut sampler));
+        }
+    }
+    let factor = scene.camera.exposure * weight;
+    (radiance, film_rgb(radiance, &wavelengths).map(|v| v * factor))
 }

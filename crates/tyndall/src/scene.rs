@@ -3,9 +3,9 @@
 use crate::{
     camera::Camera,
     light::{AreaLight, LightId, LightTable},
-    material::Material,
+    material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
-    medium::{Homogeneous, MediumId, MediumInterface},
+    medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
     shape::{Geometry, Hit, Interaction},
     spectrum::ColorMode,
     surface::may_be_open,
@@ -26,6 +26,8 @@ pub struct Object {
     pub interface: Option<MediumInterface>,
     /// Its lights.
     pub emission: Emission,
+    /// The body that it bounds, if it has a priority.
+    pub body: Option<Member>,
 }
 
 /// The lights that the primitives of an object are.
@@ -69,6 +71,10 @@ struct Facts {
     lit: Vec<bool>,
     /// By medium: a box that it does not reach out of.
     extent: Vec<Bounds>,
+    /// Bodies with a priority, which may overlap.
+    bodies: Vec<Body>,
+    /// What the camera is in.
+    around_camera: Within,
 }
 
 impl Scene {
@@ -78,20 +84,29 @@ impl Scene {
         color: ColorMode,
         camera: Camera,
         geometry: Geometry,
-        objects: Vec<Object>,
+        mut objects: Vec<Object>,
         materials: Vec<Material>,
         media: Vec<Homogeneous>,
         lights: LightTable,
     ) -> Self {
+        let bodies = Body::gather(&mut objects, &materials, &geometry);
         let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], &materials);
         let facts = Facts {
-            has_null_surfaces: objects.iter().any(is_open),
+            // A surface of a body may not be there.
+            has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
             lit: (0..media.len())
-                .map(|i| can_be_lit(MediumId(i as u32), &geometry, &objects, &materials, &lights))
+                .map(|i| MediumId(i as u32))
+                .map(|m| opens_straight(m, &bodies) || can_be_lit(m, &geometry, &objects, &materials, &lights))
                 .collect(),
-            extent: (0..media.len()).map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects)).collect(),
+            extent: (0..media.len())
+                .map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects, &bodies))
+                .collect(),
+            bodies,
+            around_camera: Within::default(),
         };
-        Self { color, camera, geometry, objects, materials, media, lights, facts }
+        let mut scene = Self { color, camera, geometry, objects, materials, media, lights, facts };
+        scene.facts.around_camera = enclosure::around_camera(&scene);
+        scene
     }
 
     /// The object that was hit.
@@ -118,6 +133,24 @@ impl Scene {
             crate::light::Light::Area(light) => Some((id, light)),
             _ => None,
         }
+    }
+
+    /// Whether there are bodies that may overlap.
+    #[inline]
+    pub fn has_bodies(&self) -> bool {
+        !self.facts.bodies.is_empty()
+    }
+
+    /// The bodies, by [`crate::medium::BodyId`].
+    #[inline]
+    pub fn bodies(&self) -> &[Body] {
+        &self.facts.bodies
+    }
+
+    /// What the camera is in: found by what encloses it where the scene does not say.
+    #[inline]
+    pub fn around_camera(&self) -> &Within {
+        &self.facts.around_camera
     }
 
     /// The first surface within a free flight of length `flight` [length].
@@ -182,16 +215,36 @@ fn can_be_lit(
     body.is_empty() || lights.lights.iter().filter_map(crate::light::Light::bounds).any(|b| overlap(&body, &b))
 }
 
-/// All of space, unless every surface that knows the medium has it inside, and stands in the world itself.
-fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Object]) -> Bounds {
+/// Whether light may leave the bodies of a medium straight: unless each body of the scene has a surface that bends it
+/// against vacuum and against each other body.
+fn opens_straight(medium: MediumId, bodies: &[Body]) -> bool {
+    let index = |body: &Body| match body.index {
+        Some(Index::Constant(eta)) if eta != 1.0 => Some(eta),
+        _ => None,
+    };
+    let mut indices: Vec<_> = bodies.iter().map(index).collect();
+    indices.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    let bends = indices.iter().all(Option::is_some) && indices.windows(2).all(|w| w[0] != w[1]);
+    !bends && bodies.iter().any(|body| body.medium == Some(medium))
+}
+
+/// All of space, unless every surface that knows the medium has it inside, is closed, and stands in the world itself.
+fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Object], bodies: &[Body]) -> Bounds {
     let mut extent = Bounds::EMPTY;
     for (index, object) in objects.iter().enumerate() {
         let Some(interface) = object.interface else { continue };
         let id = crate::shape::ObjectId(index as u32);
-        if interface.outside == Some(medium) || (interface.inside == Some(medium) && geometry.is_in_group(id)) {
+        let is_closed = || match object.body {
+            Some(member) => bodies[member.body.0 as usize].closed,
+            None => geometry.is_closed(&[id]),
+        };
+        if interface.outside == Some(medium) {
             return Bounds::EVERYTHING;
         }
         if interface.inside == Some(medium) {
+            if geometry.is_in_group(id) || !is_closed() {
+                return Bounds::EVERYTHING;
+            }
             extent = extent.union(geometry.object_bounds(id));
         }
     }

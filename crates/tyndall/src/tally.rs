@@ -30,6 +30,8 @@ pub struct Tally {
     pub truncated_throughput: f64,
     /// Paths that left a medium without meeting its boundary, by rounding; they end.
     pub leaks: u64,
+    /// Crossings into more bodies than a path can keep count of: those count as not there.
+    pub lost_bodies: u64,
     /// Number of samples that were not finite or negative.
     pub bad_samples: u64,
     /// The first few of them.
@@ -59,6 +61,7 @@ impl Tally {
         self.truncated_paths += other.truncated_paths;
         self.truncated_throughput += other.truncated_throughput;
         self.leaks += other.leaks;
+        self.lost_bodies += other.lost_bodies;
         self.bad_samples += other.bad_samples;
         let room = Self::KEPT.saturating_sub(self.bad_sample_list.len());
         self.bad_sample_list.extend(other.bad_sample_list.iter().take(room));

@@ -4,6 +4,7 @@ mod common;
 
 use common::{World, assert_mean, diffuse, glass, medium};
 use tyndall::{
+    camera::{CameraModel, Perspective},
     film::{Crop, Filter},
     integrator::{Analog, Integrator, VolPath},
     light::{Light, PointLight},
@@ -20,7 +21,7 @@ use tyndall::{
 fn still_life(scale: f32, color: ColorMode) -> Scene {
     let mut world = World::seen(Vec3::new(0.0, 1.0, 4.0) * scale, Vec3::new(0.0, 0.5, 0.0) * scale);
     world.color = color;
-    world.camera.window = [-0.5, 0.5, -0.4, 0.4];
+    world.camera.view.model = CameraModel::Perspective(Perspective::pinhole([-0.5, 0.5, -0.4, 0.4]));
     (world.camera.width, world.camera.height) = (40, 33);
     world.camera.filter = Filter::Gaussian { radius: [1.5, 1.5], sigma: 0.5 };
     let per = |v: f32| v / scale;

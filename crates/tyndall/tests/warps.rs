@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use testkit::{Family, Grid, Stream, close, line_test, quadrature, sphere_test};
+use tyndall::film::{Kernel, Lobed};
 use tyndall::math::{Vec2, Vec3};
 use tyndall::sampling::discrete::Discrete;
 use tyndall::sampling::piecewise2d::Piecewise2d;
@@ -246,5 +247,31 @@ fn points_of_an_image_follow_its_values() {
         Some(uv.as_dvec2().to_array())
     };
     family.check("chi-square", Grid::SQUARE.test(N, points, density));
+    family.finish();
+}
+
+/// Offsets of a Lanczos window of three lobes follow |f|, and each weighs f/|f| times the same number, up to the cells of
+/// its table: along both axes, ∫|f|/∫f.
+#[test]
+fn offsets_of_a_lobed_filter_follow_its_absolute_value() {
+    let mut family = Family::new("Lanczos", 0.01);
+    let filter = Lobed::new(Kernel::Sinc { tau: 3.0 }, [3.0; 2]).unwrap();
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) };
+    let f = |x: f64| sinc(x) * sinc(x / 3.0);
+    let sum = |g: &dyn Fn(f64) -> f64| (0..60_000).map(|i| g((f64::from(i) + 0.5) * 1e-4 - 3.0) * 1e-4).sum::<f64>();
+    let (integral, absolute) = (sum(&f), sum(&|x| f(x).abs()));
+    let mut stream = Stream::new(11);
+    let mut weights = Vec::new();
+    let place = || {
+        let ([x, y], weight) = filter.sample([stream.next_f32(), stream.next_f32()]);
+        let sign = (f(f64::from(x)) * f(f64::from(y))).signum();
+        weights.push(f64::from(weight) * sign);
+        f64::from(x)
+    };
+    family.check("chi-square", line_test([-3.0, 3.0], 96, N, place, |x| f(x).abs() / absolute));
+    let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+    family.check("weight", close(mean, (absolute / integral).powi(2), 1e-3));
+    let near = weights.iter().filter(|w| (**w / mean - 1.0).abs() < 0.1).count();
+    family.check("weights are alike", close(near as f64 / weights.len() as f64, 1.0, 0.02));
     family.finish();
 }

@@ -161,7 +161,7 @@ fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings
     let (width, height) = (loaded.scene.camera.width, loaded.scene.camera.height);
     let pixels = crop.map_or(u64::from(width) * u64::from(height), |c| u64::from(c.width()) * u64::from(c.height()));
     ensure!(
-        pixels <= MOST_PIXELS,
+        pixels.saturating_mul(1 + loaded.scene.camera.layers.len() as u64) <= MOST_PIXELS,
         "{pixels} pixels are more than fit into memory: render the image in parts, by --crop"
     );
     if let Some(crop) = crop {

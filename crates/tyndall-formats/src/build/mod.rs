@@ -1,5 +1,6 @@
 //! From what the user wrote to what is rendered: reads meshes and images, converts units, checks the physics.
 
+mod camera;
 mod lights;
 pub(crate) mod made;
 mod materials;
@@ -8,21 +9,16 @@ mod shapes;
 mod spectra;
 mod textures;
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::HashMap;
 
 use glam::DMat4;
-use tyndall::{
-    camera::Camera,
-    film::{Crop, Filter},
-    light::LightTable,
-    math::Transform,
-    scene::Scene,
-    spectrum::ColorMode,
-    texture::Texture,
-};
+use tyndall::{film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode, texture::Texture};
 
 use crate::{
-    desc::{CameraDesc, FilmDesc, FilterDesc, MaterialId, MediumId, SceneDesc, TextureId},
+    desc::{FilmDesc, MaterialId, MediumId, SceneDesc, TextureId},
     error::{Diagnostics, ErrorList, SceneError},
     source::{SourceMap, Span},
 };
@@ -71,41 +67,13 @@ impl Builder<'_> {
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
         let shapes = self.shapes();
         let lights = self.lights();
-        let camera = self.camera(&self.desc.camera, &self.desc.film);
+        let camera = shapes.as_ref().and_then(|shapes| self.camera(shapes));
         let mut materials = materials?;
         materials.extend(self.made.take());
         let media = media.into_iter().collect::<Option<Vec<_>>>()?;
         let (shapes, lights, camera) = (shapes?, lights?, camera?);
         let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect());
         Some(Scene::new(color, camera, shapes.geometry, shapes.objects, materials, media, table))
-    }
-
-    fn camera(&mut self, camera: &CameraDesc, film: &FilmDesc) -> Option<Camera> {
-        let window = camera.window(film.width, film.height);
-        Some(Camera {
-            to_world: self.transform(camera.to_world, camera.span)?,
-            window: [window.left, window.right, window.bottom, window.top].map(|v| v as f32),
-            width: film.width,
-            height: film.height,
-            filter: self.filter(&film.filter, film.span)?,
-            exposure: film.exposure as f32,
-            medium: camera.medium.map(|m| medium_id(m.value)),
-        })
-    }
-
-    fn filter(&mut self, filter: &FilterDesc, span: Span) -> Option<Filter> {
-        let radii = |r: [f64; 2]| r.map(|v| v as f32);
-        Some(match *filter {
-            FilterDesc::Box { radius } => Filter::Box { radius: radii(radius) },
-            FilterDesc::Triangle { radius } => Filter::Triangle { radius: radii(radius) },
-            FilterDesc::Gaussian { radius, sigma } => Filter::Gaussian { radius: radii(radius), sigma: sigma as f32 },
-            FilterDesc::Mitchell { .. } | FilterDesc::Sinc { .. } => {
-                return self.fail(
-                    SceneError::at(span, "filters with negative lobes are not known yet")
-                        .help("use a box, triangle or gaussian filter"),
-                );
-            }
-        })
     }
 
     fn transform(&mut self, matrix: DMat4, span: Span) -> Option<Transform> {

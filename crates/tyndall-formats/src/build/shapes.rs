@@ -1,16 +1,18 @@
 //! Shapes, groups, instances, and the lights that shapes are.
 
+use std::collections::HashMap;
+
 use tyndall::{
     light::{AreaLight, EmitterShape, Light, LightId},
     math::{Vec2, Vec3},
-    medium,
+    medium::{self, BodyId, Member},
     scene::{Emission, Object},
     shape::{Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere},
 };
 
 use super::{Builder, material_id, medium_id};
 use crate::{
-    desc::{AreaLightDesc, FileRef, GroupDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
+    desc::{AreaLightDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
     error::SceneError,
     mesh::{MeshError, TriangleMesh, read_obj, read_ply, read_serialized},
 };
@@ -20,6 +22,8 @@ pub(super) struct Shapes {
     pub(super) geometry: Geometry,
     pub(super) objects: Vec<Object>,
     pub(super) lights: Vec<Light>,
+    /// The surfaces of shapes that measure, by their index in the description.
+    pub(super) meters: HashMap<usize, Vec<EmitterShape>>,
 }
 
 /// Shapes in the making.
@@ -56,8 +60,14 @@ impl<'a> Builder<'a> {
     pub(super) fn shapes(&mut self) -> Option<Shapes> {
         let desc = self.desc;
         let mut gathered = Gathered::default();
-        for shape in &desc.shapes {
+        let metered = desc.camera.metered_shapes();
+        let mut objects = HashMap::new();
+        for (index, shape) in desc.shapes.iter().enumerate() {
+            let first = gathered.objects.len() as u32;
             self.shape(&mut gathered, shape);
+            if metered.contains(&index) {
+                objects.insert(index, first..gathered.objects.len() as u32);
+            }
         }
         let groups: Vec<GroupId> = desc.groups.iter().map(|g| self.group(&mut gathered, g)).collect();
         for instance in &desc.instances {
@@ -76,7 +86,19 @@ impl<'a> Builder<'a> {
             let emission = self.emitters(&geometry, object, emission, opacity, &mut lights)?;
             gathered.objects[object.0 as usize].emission = emission;
         }
-        Some(Shapes { geometry, objects: gathered.objects, lights })
+        let mut meters = HashMap::new();
+        for (index, objects) in objects {
+            let pieces: Result<Vec<_>, _> = objects.map(|object| pieces(&geometry, ObjectId(object))).collect();
+            match pieces {
+                Ok(pieces) => meters.insert(index, pieces.into_iter().flat_map(Pieces::into_shapes).collect()),
+                Err(what) => {
+                    let message = format!("a meter on {what} is not known yet");
+                    let error = SceneError::not_yet(desc.shapes[index].span, message);
+                    return self.fail(error.help("use a mesh of triangles"));
+                }
+            };
+        }
+        Some(Shapes { geometry, objects: gathered.objects, lights, meters })
     }
 
     fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> GroupId {
@@ -129,10 +151,47 @@ impl<'a> Builder<'a> {
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
+        let body = BodyId(gathered.objects.len() as u32);
+        let body = self.priority(desc)?.map(|priority| Member { body, priority });
         for object in added {
-            self.bind(gathered, desc, object)?;
+            self.bind(gathered, desc, object, body)?;
         }
         Some(())
+    }
+
+    /// The priority of a body: of something that light can enter, that does not shine, and whose outside is left to others.
+    fn priority(&mut self, desc: &ShapeDesc) -> Option<Option<i32>> {
+        let Some(priority) = desc.priority else { return Some(None) };
+        let kind = self.desc.material(desc.material.value).map(|material| &material.kind);
+        if !matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::Interface) | None) {
+            return self.fail(
+                SceneError::at(priority.span, "only a body that light can enter has a priority")
+                    .help("leave it out, or use a dielectric material or none (\"interface\", \"null\")")
+                    .related(desc.material.span, "its material"),
+            );
+        }
+        if let Some(opacity) = &desc.opacity {
+            return self.fail(
+                SceneError::at(priority.span, "a body with a priority has no holes")
+                    .help("leave out the priority, or the opacity")
+                    .related(opacity.span, "its opacity"),
+            );
+        }
+        if let Some(light) = &desc.emission {
+            return self.fail(
+                SceneError::at(priority.span, "the surface of a body with a priority cannot shine")
+                    .help("leave out the priority, or the light")
+                    .related(light.span, "its light"),
+            );
+        }
+        if let Some(interface) = desc.interface.filter(|interface| interface.outside.is_some()) {
+            return self.fail(
+                SceneError::at(interface.span, "what is outside of a body with a priority, the other bodies say")
+                    .help("name the medium inside only")
+                    .related(priority.span, "its priority"),
+            );
+        }
+        Some(Some(priority.value))
     }
 
     /// Material, media and light of an object that was just added.
@@ -141,6 +200,7 @@ impl<'a> Builder<'a> {
         gathered: &mut Gathered<'a>,
         desc: &'a ShapeDesc,
         object: Result<ObjectId, ShapeError>,
+        body: Option<Member>,
     ) -> Option<()> {
         let object = match object {
             Ok(object) => object,
@@ -158,6 +218,7 @@ impl<'a> Builder<'a> {
                 outside: i.outside.map(medium_id),
             }),
             emission: Emission::None,
+            body,
         });
         if let Some(emission) = &desc.emission {
             let opacity = match desc.opacity.as_ref().map(|opacity| (opacity.value.number(), opacity.span)) {
@@ -220,31 +281,13 @@ impl<'a> Builder<'a> {
             let radiance = radiance.clone();
             lights.push(Light::Area(AreaLight { shape, radiance, luminance, opacity, two_sided: desc.two_sided }));
         };
-        match geometry.shape(object) {
-            Shape::Sphere(sphere) => match sphere.round() {
-                Some((centre, radius)) => shine(EmitterShape::Sphere { centre, radius, inward: sphere.reversed }),
-                None => return self.cannot_shine(desc, "an ellipsoid"),
-            },
-            Shape::Disk(disk) => match disk.radius() {
-                Some(radius) => shine(EmitterShape::Disk {
-                    centre: disk.centre,
-                    ng: disk.normal(),
-                    radius,
-                    inner: disk.inner * radius,
-                }),
-                None => return self.cannot_shine(desc, "an elliptic disk"),
-            },
-            Shape::Patch(_) => return self.cannot_shine(desc, "a curved bilinear patch"),
-            Shape::Mesh(mesh) => {
-                if let Some(parallelogram) = as_parallelogram(mesh) {
-                    shine(parallelogram);
-                    return Some(Emission::Whole(first));
-                }
-                for prim in 0..mesh.indices.len() as u32 {
-                    shine(triangle(mesh.triangle(prim), mesh.reversed));
-                }
+        match pieces(geometry, object) {
+            Ok(Pieces::Whole(shape)) => shine(shape),
+            Ok(Pieces::Each(shapes)) => {
+                shapes.into_iter().for_each(shine);
                 return Some(Emission::EachPrimitive(first));
             }
+            Err(what) => return self.cannot_shine(desc, what),
         }
         Some(Emission::Whole(first))
     }
@@ -254,6 +297,45 @@ impl<'a> Builder<'a> {
             SceneError::at(desc.span, format!("light from {what} is not known yet")).help("use a mesh of triangles"),
         )
     }
+}
+
+/// The surface of an object, as it can be sampled.
+enum Pieces {
+    /// All of it at once.
+    Whole(EmitterShape),
+    /// A piece for each primitive.
+    Each(Vec<EmitterShape>),
+}
+
+impl Pieces {
+    fn into_shapes(self) -> Vec<EmitterShape> {
+        match self {
+            Self::Whole(shape) => vec![shape],
+            Self::Each(shapes) => shapes,
+        }
+    }
+}
+
+/// The surface of an object; or what it is, if it cannot be sampled.
+fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str> {
+    Ok(Pieces::Whole(match geometry.shape(object) {
+        Shape::Sphere(sphere) => {
+            let (centre, radius) = sphere.round().ok_or("an ellipsoid")?;
+            EmitterShape::Sphere { centre, radius, inward: sphere.reversed }
+        }
+        Shape::Disk(disk) => {
+            let radius = disk.radius().ok_or("an elliptic disk")?;
+            EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
+        }
+        Shape::Patch(_) => return Err("a curved bilinear patch"),
+        Shape::Mesh(mesh) => match as_parallelogram(mesh) {
+            Some(parallelogram) => parallelogram,
+            None => {
+                let prims = 0..mesh.indices.len() as u32;
+                return Ok(Pieces::Each(prims.map(|prim| triangle(mesh.triangle(prim), mesh.reversed)).collect()));
+            }
+        },
+    }))
 }
 
 fn triangle([a, b, c]: [Vec3; 3], reversed: bool) -> EmitterShape {

@@ -1,26 +1,106 @@
 //! The camera and its film.
 
 use glam::DMat4;
+use tyndall::film::LayerKind;
 
-use super::{MediumId, Span, Spanned};
+use super::{FileRef, MediumId, Span, Spanned};
 
-/// A perspective camera.
+/// A camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraDesc {
     /// The words that made it.
     pub span: Span,
     /// Camera space to world: the camera sits at the origin, looks along +z, +x is right in the image, +y is up.
     pub to_world: DMat4,
-    /// Field of view \[degrees\], in (0, 180).
-    pub fov: Spanned<f64>,
-    /// The side of the image that the field of view spans.
-    pub fov_axis: FovAxis,
-    /// Width over height of the picture, if it is not that of the film.
-    pub aspect: Option<Spanned<f64>>,
-    /// pbrt's screen window `[x_min, x_max, y_min, y_max]`, in which 1 is half the field of view; it replaces the aspect.
-    pub screen_window: Option<Spanned<[f64; 4]>>,
+    /// How it sees.
+    pub kind: CameraKind,
     /// The medium that the camera is in, if the file says.
     pub medium: Option<Spanned<MediumId>>,
+}
+
+/// How a camera sees.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CameraKind {
+    /// Through a pinhole or a thin lens.
+    Perspective {
+        /// Field of view \[degrees\], in (0, 180).
+        fov: Spanned<f64>,
+        /// What of it is in the picture.
+        frame: FrameDesc,
+        /// The lens; a pinhole without one.
+        lens: Option<ThinLensDesc>,
+    },
+    /// By parallel rays: half the picture's reference side is 1 scene unit.
+    Orthographic {
+        /// What is in the picture.
+        frame: FrameDesc,
+    },
+    /// All around.
+    Spherical {
+        /// How directions lie on the picture.
+        mapping: SphereMapping,
+    },
+    /// A film behind a lens that a file describes.
+    Realistic(RealisticDesc),
+    /// The light that falls on a shape.
+    IrradianceMeter {
+        /// Index into [`super::SceneDesc::shapes`].
+        shape: usize,
+    },
+    /// The light of one ray along +z.
+    RadianceMeter,
+    /// Several cameras side by side, left to right, each as wide as the others.
+    Batch(Vec<CameraDesc>),
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinLensDesc {
+    /// Radius \[scene units\], greater than 0.
+    pub radius: f64,
+    /// Distance of the plane in focus \[scene units\], greater than 0.
+    pub focus: f64,
+}
+
+/// How directions lie on a picture of all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SphereMapping {
+    /// On an equal-area octahedral square.
+    EqualArea,
+    /// By latitude and longitude.
+    Equirectangular,
+}
+
+/// A film behind a lens of many elements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RealisticDesc {
+    /// The lens: four numbers an element \[mm\].
+    pub lens: FileRef,
+    /// Diameter of the stop \[mm\].
+    pub aperture_diameter: f64,
+    /// Distance from the film that is in focus \[scene units\].
+    pub focus_distance: Spanned<f64>,
+    /// Shape of the stop.
+    pub aperture: ApertureDesc,
+    /// How long a millimetre of the lens is \[scene units\].
+    pub millimetre: f64,
+}
+
+/// The opening of a lens's stop.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ApertureDesc {
+    /// A disk.
+    Circular,
+    /// A disk that lets less through towards its edge.
+    Gaussian,
+    /// A square.
+    Square,
+    /// A regular pentagon.
+    Pentagon,
+    /// A star of five points.
+    Star,
+    /// A picture over the square around the disk.
+    Image(FileRef),
 }
 
 /// The side of an image that a field of view spans.
@@ -38,7 +118,18 @@ pub enum FovAxis {
     Diagonal,
 }
 
-/// The part of the plane z = 1 in camera space that the whole film sees (a crop is a part of it).
+/// What part of the view is in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameDesc {
+    /// The side of the image whose half is 1.
+    pub axis: FovAxis,
+    /// Width over height of the picture, if it is not that of the film.
+    pub aspect: Option<Spanned<f64>>,
+    /// pbrt's screen window `[x_min, x_max, y_min, y_max]`; it replaces the aspect.
+    pub screen_window: Option<Spanned<[f64; 4]>>,
+}
+
+/// The part of a plane that the whole film sees (a crop is a part of it).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageWindow {
     /// x at the left edge.
@@ -52,16 +143,53 @@ pub struct ImageWindow {
 }
 
 impl CameraDesc {
-    /// What a film of `width` × `height` pixels sees of the plane z = 1.
-    pub fn window(&self, width: u32, height: u32) -> ImageWindow {
-        let half = (self.fov.value.to_radians() / 2.0).tan();
+    /// What a film of `width` × `height` pixels sees: of the plane z = 1 through a pinhole or thin lens, of the plane z = 0
+    /// by parallel rays. `None` for a camera whose picture is no part of a plane.
+    pub fn window(&self, width: u32, height: u32) -> Option<ImageWindow> {
+        match &self.kind {
+            CameraKind::Perspective { fov, frame, .. } => {
+                Some(frame.window((fov.value.to_radians() / 2.0).tan(), width, height))
+            }
+            CameraKind::Orthographic { frame } => Some(frame.window(1.0, width, height)),
+            _ => None,
+        }
+    }
+
+    /// The shapes that it measures at, as indices into [`super::SceneDesc::shapes`].
+    pub fn metered_shapes(&self) -> Vec<usize> {
+        match &self.kind {
+            CameraKind::IrradianceMeter { shape } => vec![*shape],
+            CameraKind::Batch(cameras) => cameras.iter().flat_map(Self::metered_shapes).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The files that it names.
+    pub fn files(&self) -> Vec<&FileRef> {
+        match &self.kind {
+            CameraKind::Realistic(RealisticDesc { lens, aperture: ApertureDesc::Image(image), .. }) => {
+                vec![lens, image]
+            }
+            CameraKind::Realistic(realistic) => vec![&realistic.lens],
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl FrameDesc {
+    /// The whole film, by one of its sides.
+    pub fn of_film(axis: FovAxis) -> Self {
+        Self { axis, aspect: None, screen_window: None }
+    }
+
+    fn window(&self, half: f64, width: u32, height: u32) -> ImageWindow {
         if let Some(Spanned { value: [left, right, bottom, top], .. }) = self.screen_window {
             return ImageWindow { left: left * half, right: right * half, bottom: bottom * half, top: top * half };
         }
         let aspect = self.aspect.map_or(width as f64 / height as f64, |a| a.value);
         let wide = aspect > 1.0;
         // Half the width and half the height, from the one that is known.
-        let (x, y) = match (self.fov_axis, wide) {
+        let (x, y) = match (self.axis, wide) {
             (FovAxis::X, _) | (FovAxis::Smaller, false) | (FovAxis::Larger, true) => (half, half / aspect),
             (FovAxis::Y, _) | (FovAxis::Smaller, true) | (FovAxis::Larger, false) => (half * aspect, half),
             (FovAxis::Diagonal, _) => {
@@ -86,8 +214,12 @@ pub struct FilmDesc {
     pub crop: Option<CropDesc>,
     /// Where to write the image, if the file says.
     pub filename: Option<Spanned<String>>,
+    /// Its diagonal \[mm\], which matters behind a lens.
+    pub diagonal: f64,
     /// Reconstruction filter.
     pub filter: FilterDesc,
+    /// What is recorded beside light.
+    pub layers: Vec<LayerKind>,
     /// Factor on every value (pbrt: `iso` / 100 × time that the shutter is open), 1 by default.
     pub exposure: f64,
 }
@@ -148,24 +280,18 @@ mod tests {
     use super::*;
     use crate::source::FileId;
 
-    fn camera(fov_axis: FovAxis) -> CameraDesc {
+    fn camera(axis: FovAxis) -> CameraDesc {
         let span = Span::new(FileId(0), 0, 0);
-        CameraDesc {
-            span,
-            to_world: DMat4::IDENTITY,
-            fov: Spanned::new(90.0, span),
-            fov_axis,
-            aspect: None,
-            screen_window: None,
-            medium: None,
-        }
+        let kind =
+            CameraKind::Perspective { fov: Spanned::new(90.0, span), frame: FrameDesc::of_film(axis), lens: None };
+        CameraDesc { span, to_world: DMat4::IDENTITY, kind, medium: None }
     }
 
     /// tan 45° = 1, so a field of view of 90° reaches to ±1 along its own axis.
     #[test]
     fn the_field_of_view_spans_its_axis() {
         let corner = |axis, width, height| {
-            let w = camera(axis).window(width, height);
+            let w = camera(axis).window(width, height).unwrap();
             assert_eq!((w.left, w.bottom), (-w.right, -w.top));
             (w.right, w.top)
         };

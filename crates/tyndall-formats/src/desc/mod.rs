@@ -29,7 +29,10 @@ mod texture;
 
 use std::path::PathBuf;
 
-pub use camera::{CameraDesc, CropDesc, FilmDesc, FilterDesc, FovAxis, ImageWindow};
+pub use camera::{
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FovAxis, FrameDesc, ImageWindow,
+    RealisticDesc, SphereMapping, ThinLensDesc,
+};
 pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
 pub use material::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind};
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
@@ -104,7 +107,7 @@ impl SceneDesc {
         self.media.get(id.0 as usize)
     }
 
-    /// Every mesh and image that the scene names, in the order of their mention.
+    /// Every mesh, image and lens that the scene names, in the order of their mention.
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let shapes = self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes));
         let meshes = shapes.filter_map(|shape| match &shape.kind {
@@ -121,7 +124,7 @@ impl SceneDesc {
             LightKind::Environment { path, .. } => Some(path),
             _ => None,
         });
-        meshes.chain(pictures).chain(skies).map(|file| &file.value)
+        meshes.chain(pictures).chain(skies).chain(self.camera.files()).map(|file| &file.value)
     }
 
     /// A group. `None` for an id of another scene.

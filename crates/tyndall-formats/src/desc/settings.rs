@@ -1,5 +1,7 @@
 //! Settings: units, samples, integrator, and what had no effect.
 
+use tyndall::film::LayerKind;
+
 use super::{Span, Spanned};
 
 /// Settings of the scene as a whole.
@@ -88,6 +90,8 @@ pub struct IntegratorDesc {
     pub rr_depth: Option<Spanned<u32>>,
     /// Whether emission that the camera sees directly is left out.
     pub hide_emitters: bool,
+    /// What is to be recorded beside light, if the integrator says.
+    pub layers: Vec<LayerKind>,
 }
 
 /// Words that were read and understood, and change nothing here.

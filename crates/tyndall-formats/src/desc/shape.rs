@@ -25,6 +25,8 @@ pub struct ShapeDesc {
     pub emission: Option<AreaLightDesc>,
     /// What is on either side of it, if the user says.
     pub interface: Option<MediumInterface>,
+    /// Its priority, if it is a body that may overlap others: of those at a point the highest is there.
+    pub priority: Option<Spanned<i32>>,
 }
 
 /// The geometry of a shape. Lengths are scene units before [`ShapeDesc::to_world`].

@@ -2,7 +2,7 @@
 //!
 //! One part, ZIP-compressed, 32-bit floats. Channels `R`, `G`, `B` hold the mean, the layer `stderr` (channels
 //! `stderr.R`, `stderr.G`, `stderr.B`) the standard error of the mean, infinite where a pixel has fewer than two
-//! samples. The data window is the crop, the display window the whole image, the chromaticities are those of Rec. 709.
+//! samples. Layers of the film follow by their own names (`P.X`, `stderr.P.X`). The data window is the crop, the display window the whole image, the chromaticities are those of Rec. 709.
 //! Settings are text attributes named `tyndall.*` ([`Metadata`]).
 
 use std::{collections::HashMap, io::Cursor, path::Path};
@@ -32,6 +32,12 @@ pub fn write(path: &Path, image: &Image) -> Result<(), FilmError> {
     if let Some(errors) = &image.standard_error {
         channels.extend(rgb_channels("stderr.", errors));
     }
+    channels.extend(
+        image
+            .layers
+            .iter()
+            .map(|channel| AnyChannel::new(utf8(&channel.name), FlatSamples::F32(channel.values.clone()))),
+    );
     let crop = image.crop;
     let layer = Layer::new(
         Vec2(crop.width() as usize, crop.height() as usize),
@@ -92,6 +98,7 @@ fn decode(bytes: &[u8]) -> Result<Image, String> {
         crop,
         mean: gather(mean, layer.size),
         standard_error,
+        layers: Vec::new(),
         rounding: if half { 1.0 / 2048.0 } else { ROUNDING_F32 },
         metadata: Metadata::from_entries(|name| text_attribute(&layer.attributes.other, name)),
     })

@@ -17,7 +17,7 @@ pub mod tone;
 
 use std::path::PathBuf;
 
-use tyndall::film::{Crop, Film, Pixel};
+use tyndall::film::{Average, Cell, Crop, Film, Layer, Pixel};
 
 pub use metadata::Metadata;
 pub use tone::{Curve, Tone};
@@ -35,6 +35,8 @@ pub struct Image {
     pub mean: Vec<[f32; 3]>,
     /// Standard errors of the means; `None` if the file tells none.
     pub standard_error: Option<Vec<[f32; 3]>>,
+    /// What the film recorded beside light, by the names of channels. Not read back from files.
+    pub layers: Vec<Channel>,
     /// Largest relative error by which storing a value rounded it: 2⁻²⁴ for 32-bit floats, 2⁻¹¹ for 16-bit ones.
     pub rounding: f32,
     /// How the image was made; `None` for files of other programs.
@@ -50,10 +52,38 @@ impl Image {
             crop: film.crop,
             mean: film.pixels.iter().map(Pixel::mean).collect(),
             standard_error: Some(film.pixels.iter().map(Pixel::standard_error).collect()),
+            layers: film.layers.iter().flat_map(|layer| channels(film, layer)).collect(),
             rounding: ROUNDING_F32,
             metadata: Some(metadata),
         }
     }
+}
+
+/// A named number of every pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// As `P.X`; unique in an image.
+    pub name: String,
+    /// Row by row.
+    pub values: Vec<f32>,
+}
+
+/// The lanes of a layer, and their standard errors where it is a plain mean.
+fn channels(film: &Film, layer: &Layer) -> Vec<Channel> {
+    let lanes = |of: &dyn Fn(&Cell, u64) -> [f32; 4], prefix: &str| -> Vec<Channel> {
+        let cells = || layer.cells.iter().zip(&film.pixels);
+        let lane = |(lane, name): (usize, &String)| Channel {
+            name: format!("{prefix}{name}"),
+            values: cells().map(|(cell, pixel)| of(cell, pixel.count)[lane]).collect(),
+        };
+        layer.kind.channels.iter().take(4).enumerate().map(lane).collect()
+    };
+    let average = layer.kind.average;
+    let mut channels = lanes(&|cell, count| cell.value(average, count), "");
+    if average == Average::Samples {
+        channels.extend(lanes(&Cell::standard_error, "stderr."));
+    }
+    channels
 }
 
 /// Half a unit in the last place of a 32-bit float.

@@ -1,10 +1,11 @@
-//! Pictures as light: OpenEXR, Radiance HDR, PFM, and 8- or 16-bit PNG, JPEG and TIFF, all as linear RGB.
+//! Pictures as light: OpenEXR, Radiance HDR, PFM, and 8- or 16-bit PNG, JPEG, TIFF, TGA, BMP and QOI, all as linear RGB.
 //!
 //! What the numbers are mapped onto is not said here: pbrt reads an environment as an equal-area octahedral square,
 //! Mitsuba as latitude and longitude.
 
 mod openexr;
 mod pfm;
+mod qoi;
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -76,7 +77,12 @@ fn parse_encoded(bytes: &[u8], extension: &str, encoding: Encoding) -> Result<Im
         "png" => parse_coded(bytes, ImageFormat::Png),
         "jpg" | "jpeg" => parse_coded(bytes, ImageFormat::Jpeg),
         "tif" | "tiff" => parse_coded(bytes, ImageFormat::Tiff),
-        other => Err(format!("`.{other}` is no image format that is read: exr, hdr, pfm, png, jpg, tiff")),
+        "tga" => parse_coded(bytes, ImageFormat::Tga),
+        "bmp" => parse_coded(bytes, ImageFormat::Bmp),
+        "qoi" => qoi::parse(bytes, encoding),
+        other => {
+            Err(format!("`.{other}` is no image format that is read: exr, hdr, pfm, png, jpg, tiff, tga, bmp, qoi"))
+        }
     }?;
     match image.pixels.iter().position(|p| !p.iter().all(|c| c.is_finite() && *c >= 0.0)) {
         None => Ok(image),

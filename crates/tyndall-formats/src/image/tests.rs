@@ -43,6 +43,34 @@ fn coded(format: ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
+/// One chunk of each kind, by the specification: a colour, two more of it, a small difference, one by its green, an
+/// earlier colour by its hash (3·10 + 5·20 + 7·30 + 11·255) mod 64 = 9, a colour with alpha, and a difference that wraps.
+fn qoi() -> Vec<u8> {
+    let header = [b"qoif".as_slice(), &[0, 0, 0, 4, 0, 0, 0, 2, 3, 0]].concat();
+    let chunks = [0xfe, 10, 20, 30, 0xc1, 0x76, 0xa5, 0x5a, 0x09, 0xff, 1, 2, 3, 128, 0x4a];
+    [header.as_slice(), &chunks, &[0, 0, 0, 0, 0, 0, 0, 1]].concat()
+}
+
+#[test]
+fn every_chunk_of_qoi_is_understood() {
+    let codes =
+        [[10, 20, 30], [10, 20, 30], [10, 20, 30], [11, 19, 30], [13, 24, 37], [10, 20, 30], [1, 2, 3], [255, 2, 3]];
+    let image = parse_encoded(&qoi(), "qoi", Encoding::Linear).unwrap();
+    assert_eq!((image.width, image.height), (4, 2));
+    for (found, code) in image.pixels.iter().zip(codes) {
+        assert_eq!(found.map(|v| (v * 255.0).round() as i32), code);
+    }
+    assert!(parse_image(&qoi()[..20], "qoi").is_err());
+}
+
+#[test]
+fn a_picture_of_codes_is_the_same_in_every_format_of_codes() {
+    let png = parse_image(&coded(ImageFormat::Png), "png").unwrap();
+    for (format, ending) in [(ImageFormat::Tga, "tga"), (ImageFormat::Bmp, "bmp"), (ImageFormat::Tiff, "tif")] {
+        assert_eq!(parse_image(&coded(format), ending).unwrap(), png, "{ending}");
+    }
+}
+
 #[test]
 fn a_picture_of_floats_is_the_same_in_every_format_of_floats() {
     assert_eq!(parse_image(&exr(), "exr").unwrap(), picture());
@@ -69,7 +97,7 @@ fn eight_bits_are_decoded_by_the_srgb_curve() {
 fn a_faulty_image_is_told_what_is_wrong() {
     let nan = [b"PF 1 1 -1\n".as_slice(), &[0, 0, 0, 0, 0, 0, 192, 127, 0, 0, 0, 0]].concat();
     let cases: [(&[u8], &str, &str); 6] = [
-        (b"", "gif", "`.gif` is no image format that is read: exr, hdr, pfm, png, jpg, tiff"),
+        (b"", "gif", "`.gif` is no image format that is read: exr, hdr, pfm, png, jpg, tiff, tga, bmp, qoi"),
         (b"P6\n1 1\n255\n", "pfm", "does not begin with `PF` or `Pf`"),
         (b"PF\n0 1\n-1\n", "pfm", "is 0 × 1 pixels"),
         (
@@ -92,7 +120,7 @@ proptest! {
 
     #[test]
     fn no_damage_to_an_image_makes_a_reader_panic(
-        which in 0usize..6,
+        which in 0usize..9,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6),
         keep in any::<prop::sample::Index>(),
         cut in any::<bool>(),
@@ -103,7 +131,10 @@ proptest! {
             2 => (coded(ImageFormat::Hdr), "hdr"),
             3 => (coded(ImageFormat::Png), "png"),
             4 => (coded(ImageFormat::Jpeg), "jpg"),
-            _ => (coded(ImageFormat::Tiff), "tiff"),
+            5 => (coded(ImageFormat::Tiff), "tiff"),
+            6 => (coded(ImageFormat::Tga), "tga"),
+            7 => (coded(ImageFormat::Bmp), "bmp"),
+            _ => (qoi(), "qoi"),
         };
         for (at, byte) in damage {
             let at = at.index(bytes.len());

@@ -1,4 +1,5 @@
-//! `<sensor type="perspective">` with its `<film>`, `<rfilter>` and `<sampler>`.
+//! `<sensor>`: `perspective`, `thinlens`, `orthographic`, `radiancemeter`, `irradiancemeter`, `batch`; with `<film>`,
+//! `<rfilter>` and `<sampler>`.
 //!
 //! Mitsuba's camera looks along its own +z with +x to the left of the image; a [`CameraDesc`] has +x to the right. So the
 //! x axis is turned round: `to_world · diag(−1, 1, 1)`.
@@ -9,19 +10,22 @@ use super::object::{Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
 use super::words;
-use crate::desc::{CameraDesc, CropDesc, FilmDesc, FilterDesc, FovAxis, SamplerDesc};
+use crate::desc::{
+    CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FovAxis, FrameDesc, Ignored, SamplerDesc, ThinLensDesc,
+};
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
 /// The largest film \[pixels a side\].
 const LARGEST_SIDE: u32 = 1 << 16;
 
-/// The camera, its film and its sampler.
+/// The camera, its film and its sampler. `shape` is the shape that it stands on, if it does.
 pub(super) fn sensor<'t>(
     builder: &mut Builder<'t>,
     element: &'t Element,
+    shape: Option<usize>,
 ) -> Option<(CameraDesc, FilmDesc, SamplerDesc)> {
-    words::plugin(element, &mut builder.report)?;
+    let plugin = words::plugin(element, &mut builder.report)?;
     let mut object = builder.object(element);
     let film = match object.only("film", &mut builder.report) {
         Some(film) => film_desc(builder, film.element)?,
@@ -32,27 +36,129 @@ pub(super) fn sensor<'t>(
         None => None,
     };
     let sampler = sampler.unwrap_or_else(|| default_sampler(element.span));
+    let camera = camera(builder, object, plugin, shape)?;
+    match &camera.kind {
+        CameraKind::RadianceMeter if (film.width, film.height) != (1, 1) => {
+            let error = SceneError::at(film.span, "the film of a \"radiancemeter\" has one pixel");
+            builder.report.errors.push(error.help("set \"width\" and \"height\" to 1"));
+        }
+        CameraKind::Batch(cameras) if film.width as usize % cameras.len() != 0 => {
+            let message = format!("{} sensors do not divide {} columns", cameras.len(), film.width);
+            builder.report.errors.push(SceneError::at(film.span, message).help("set another \"width\""));
+        }
+        _ => {}
+    }
+    Some((camera, film, sampler))
+}
+
+/// A camera, its film and sampler left to the sensor that it belongs to.
+fn camera<'t>(
+    builder: &mut Builder<'t>,
+    mut object: Object<'t>,
+    plugin: &str,
+    shape: Option<usize>,
+) -> Option<CameraDesc> {
+    let span = object.element.span;
     let medium = object.only("medium", &mut builder.report);
     let medium = medium.and_then(|m| Some(Spanned::new(builder.medium_id(m.element)?, m.at.span)));
-
+    let parts = if plugin == "batch" { object.nested("sensor") } else { Vec::new() };
+    let cameras: Vec<_> = parts.iter().filter_map(|part| builder.part_of_batch(part.element)).collect();
     let report = &mut builder.report;
-    let (fov, fov_axis) = field_of_view(&mut object, report);
-    let to_world = object.transform(report);
-    check_rigid(to_world, element, report);
+    let mut to_world = DMat4::IDENTITY;
+    let kind = match plugin {
+        "perspective" | "thinlens" => {
+            let (fov, axis) = field_of_view(&mut object, report);
+            let lens = (plugin == "thinlens").then(|| thin_lens(&mut object, report)).flatten();
+            object.not_yet(&["principal_point_offset_x", "principal_point_offset_y"], report);
+            to_world = object.transform(report);
+            check_rigid(to_world, object.element, report);
+            CameraKind::Perspective { fov, frame: FrameDesc::of_film(axis), lens }
+        }
+        "orthographic" => {
+            to_world = object.transform(report);
+            CameraKind::Orthographic { frame: FrameDesc::of_film(FovAxis::X) }
+        }
+        "radiancemeter" => {
+            to_world = meter_transform(&mut object, report);
+            CameraKind::RadianceMeter
+        }
+        "irradiancemeter" => {
+            let Some(shape) = shape else {
+                let error = SceneError::at(span, "an \"irradiancemeter\" measures at a shape");
+                report.errors.push(error.help("write it inside of a <shape>"));
+                return None;
+            };
+            CameraKind::IrradianceMeter { shape }
+        }
+        _ if parts.is_empty() => {
+            report.errors.push(SceneError::at(span, "the batch has no <sensor>"));
+            return None;
+        }
+        _ => CameraKind::Batch(cameras),
+    };
     object.ignore(&["near_clip", "far_clip"], "nothing is too near or too far to be seen", report);
     object.ignore(&["shutter_open", "shutter_close"], "nothing moves", report);
-    object.not_yet(&["principal_point_offset_x", "principal_point_offset_y", "srf"], report);
+    object.not_yet(&["srf"], report);
     object.finish(report);
-    let camera = CameraDesc {
-        span: element.span,
-        to_world: to_world * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)),
-        fov,
-        fov_axis,
-        aspect: None,
-        screen_window: None,
-        medium,
+    let to_world = to_world * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    Some(CameraDesc { span, to_world, kind, medium })
+}
+
+impl<'t> Builder<'t> {
+    /// A sensor of a batch, whose film and sampler are the batch's.
+    fn part_of_batch(&mut self, element: &'t Element) -> Option<CameraDesc> {
+        let plugin = words::plugin(element, &mut self.report)?;
+        if plugin == "batch" {
+            let error = SceneError::at(element.span, "a batch inside of a batch");
+            self.report.errors.push(error.help("list its sensors here"));
+            return None;
+        }
+        let mut object = self.object(element);
+        for tag in ["film", "sampler"] {
+            for child in object.nested(tag) {
+                let reason = "a batch has one film and one sampler";
+                self.report.ignored.push(Ignored { span: child.at.span, reason });
+            }
+        }
+        camera(self, object, plugin, None)
+    }
+}
+
+/// A lens of radius `aperture_radius`, focused at `focus_distance`: Mitsuba's far clip, if nothing is said.
+fn thin_lens(object: &mut Object, report: &mut Report) -> Option<ThinLensDesc> {
+    let radius = object.float("aperture_radius", |r| r >= 0.0, "at least 0", report);
+    let far = object.float("far_clip", |f| f > 0.0, "greater than 0", report).map_or(1e4, |f| f.value);
+    let focus = object.float("focus_distance", |f| f > 0.0, "greater than 0", report).map_or(far, |f| f.value);
+    let Some(radius) = radius else {
+        report.errors.push(SceneError::at(object.element.span, "the \"thinlens\" lacks an \"aperture_radius\""));
+        return None;
     };
-    Some((camera, film, sampler))
+    (radius.value > 0.0).then_some(ThinLensDesc { radius: radius.value, focus })
+}
+
+/// `to_world`, or a place and a direction.
+fn meter_transform(object: &mut Object, report: &mut Report) -> DMat4 {
+    let placed = object.has("to_world");
+    let to_world = object.transform(report);
+    let (origin, direction) = (object.point("origin", report), object.point("direction", report));
+    match (origin, direction) {
+        _ if placed => to_world,
+        (Some(origin), Some(direction)) => {
+            let Some(z) = direction.value.try_normalize() else {
+                report.errors.push(SceneError::at(direction.span, "a \"direction\" has a length"));
+                return to_world;
+            };
+            let (x, y) = z.any_orthonormal_pair();
+            DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), origin.value.extend(1.0))
+        }
+        (None, None) => to_world,
+        (Some(one), None) | (None, Some(one)) => {
+            report
+                .errors
+                .push(SceneError::at(one.span, "\"origin\" and \"direction\" are given together or not at all"));
+            to_world
+        }
+    }
 }
 
 /// `fov` along `fov_axis`, or the focal length of a 35 mm camera, whose picture is 36 × 24 mm.
@@ -94,7 +200,18 @@ fn check_rigid(to_world: DMat4, element: &Element, report: &mut Report) {
 }
 
 fn default_film(span: Span) -> FilmDesc {
-    FilmDesc { span, width: 768, height: 576, crop: None, filename: None, filter: gaussian(0.5), exposure: 1.0 }
+    let filter = gaussian(0.5);
+    FilmDesc {
+        span,
+        width: 768,
+        height: 576,
+        crop: None,
+        filename: None,
+        diagonal: 35.0,
+        filter,
+        layers: Vec::new(),
+        exposure: 1.0,
+    }
 }
 
 fn film_desc<'t>(builder: &mut Builder<'t>, element: &'t Element) -> Option<FilmDesc> {

@@ -6,8 +6,8 @@
 //!              $parameters      parameters, references
 //! ```
 //!
-//! What is read, with Mitsuba's defaults: sensor `perspective`, film `hdrfilm` and the filters, all samplers; integrators
-//! `path`, `volpath`, `volpathmis`, `direct`; shapes `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `shapegroup`,
+//! What is read, with Mitsuba's defaults: sensors `perspective`, `thinlens`, `orthographic`, `radiancemeter`,
+//! `irradiancemeter`, `batch`, film `hdrfilm` and the filters, all samplers; all integrators but `stokes`; shapes `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `shapegroup`,
 //! `instance`; bsdfs `diffuse`, `twosided`, `dielectric`, `roughdielectric`, `thindielectric`, `conductor`,
 //! `roughconductor`, `null`; emitters `area`, `constant`, `envmap`, `point`, `spot`, `directional`; medium `homogeneous` with `isotropic` and `hg`. Any other
 //! word is an error, with the nearest word that is known; a word that Mitsuba has and tyndall does not have yet is said to
@@ -16,6 +16,7 @@
 //! Where Mitsuba's conventions differ from pbrt's, the description says which holds: see [`crate::desc`]. A plain number
 //! for a light is white light, as an RGB triple is; for anything else it is the same at every wavelength.
 
+mod aov;
 mod bsdf;
 mod camera;
 mod emitter;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::object::{Child, Files, Ids, Object, Report};
+use super::object::{Files, Ids, Object, Report};
 use super::tree::{Element, Tree};
 use super::{camera, integrator, words};
 use crate::desc::{
@@ -37,6 +37,8 @@ pub(super) struct Builder<'t> {
     pub(super) groups: Vec<GroupDesc>,
     pub(super) instances: Vec<InstanceDesc>,
     pub(super) lights: Vec<LightDesc>,
+    /// Sensors on shapes, with the index of the shape.
+    pub(super) meters: Vec<(&'t Element, usize)>,
 }
 
 /// The scene of a tree, and all that is wrong with it. `None` only if something is wrong.
@@ -61,6 +63,7 @@ pub(super) fn build(tree: &Tree, sources: &SourceMap, errors: ErrorList) -> (Opt
         groups: Vec::new(),
         instances: Vec::new(),
         lights: Vec::new(),
+        meters: Vec::new(),
     };
     let scene = builder.scene(&tree.root);
     (scene, builder.report.errors)
@@ -125,7 +128,7 @@ impl<'t> Builder<'t> {
         };
         let integrator = integrator.unwrap_or_else(|| default_integrator(root.span));
         let sensor = self.sensor(&mut scene);
-        let seen = sensor.and_then(|sensor| camera::sensor(self, sensor.element));
+        let seen = sensor.and_then(|(element, shape)| camera::sensor(self, element, shape));
         scene.finish(&mut self.report);
 
         let (camera, film, sampler) = seen?;
@@ -147,16 +150,19 @@ impl<'t> Builder<'t> {
         })
     }
 
-    /// The first sensor, as in Mitsuba.
-    fn sensor(&mut self, scene: &mut Object<'t>) -> Option<Child<'t>> {
-        let sensors = scene.nested("sensor");
+    /// The first sensor, and the shape that it stands on. Mitsuba too takes the first.
+    fn sensor(&mut self, scene: &mut Object<'t>) -> Option<(&'t Element, Option<usize>)> {
+        let mut sensors: Vec<_> = scene.nested("sensor").iter().map(|s| (s.at.span, s.element, None)).collect();
+        sensors.extend(self.meters.iter().map(|(element, shape)| (element.span, *element, Some(*shape))));
         if sensors.is_empty() {
             let error = SceneError::at(scene.element.span, "the scene has no <sensor>");
             self.report.errors.push(error.help("add a <sensor type=\"perspective\">"));
         }
         let reason = "the first sensor of the scene makes the image";
-        self.report.ignored.extend(sensors.iter().skip(1).map(|s| crate::desc::Ignored { span: s.at.span, reason }));
-        sensors.first().copied()
+        self.report
+            .ignored
+            .extend(sensors.iter().skip(1).map(|(span, ..)| crate::desc::Ignored { span: *span, reason }));
+        sensors.first().map(|(_, element, shape)| (*element, *shape))
     }
 
     /// The material of a `<bsdf>`, built once.
@@ -201,6 +207,7 @@ impl<'t> Builder<'t> {
 }
 
 /// Mitsuba's `path`, which it takes if a scene names none.
-fn default_integrator(span: Span) -> IntegratorDesc {
-    IntegratorDesc { name: Spanned::new("path".into(), span), max_depth: None, rr_depth: None, hide_emitters: false }
+pub(super) fn default_integrator(span: Span) -> IntegratorDesc {
+    let name = Spanned::new("path".into(), span);
+    IntegratorDesc { name, max_depth: None, rr_depth: None, hide_emitters: false, layers: Vec::new() }
 }

@@ -38,6 +38,9 @@ impl<'t> Builder<'t> {
         let mut object = self.object(element);
         let emitter = object.only("emitter", &mut self.report);
         let emission = emitter.and_then(|emitter| self.area_light(emitter.element));
+        if let Some(sensor) = object.only("sensor", &mut self.report) {
+            self.meters.push((sensor.element, self.shapes.len()));
+        }
         let bsdf = object.only("bsdf", &mut self.report);
         let material = bsdf.and_then(|bsdf| Some(Spanned::new(self.material(bsdf.element, false)?, bsdf.at.span)));
         let material =
@@ -47,6 +50,9 @@ impl<'t> Builder<'t> {
         let kind = self.shape_kind(plugin, &mut object, &mut to_world)?;
         let report = &mut self.report;
         let reverse_orientation = object.flag("flip_normals", false, report);
+        // tyndall's own.
+        let priority = object.integer("priority", i32::MIN.into(), report);
+        let priority = priority.map(|p| p.map(|p| i32::try_from(p).unwrap_or(i32::MAX)));
         object.ignore(&["silhouette_sampling_weight"], "silhouettes are not sampled", report);
         object.finish(report);
         let name = element.attribute("id").map(|id| id.value.clone());
@@ -60,6 +66,7 @@ impl<'t> Builder<'t> {
             opacity: None,
             emission,
             interface,
+            priority,
         })
     }
 
@@ -150,7 +157,12 @@ impl<'t> Builder<'t> {
                 self.report.errors.push(SceneError::at(child.at.span, message));
                 continue;
             }
+            let meters = self.meters.len();
             let shape = self.shape(plugin, child.element);
+            for (sensor, _) in self.meters.split_off(meters) {
+                let message = "a shape that measures cannot be part of a \"shapegroup\"";
+                self.report.errors.push(SceneError::at(sensor.span, message));
+            }
             if let Some(emission) = shape.as_ref().and_then(|shape| shape.emission.as_ref()) {
                 let error = SceneError::at(emission.span, "a shape that shines cannot be part of a \"shapegroup\"");
                 self.report.errors.push(error.help("place it in the scene itself"));

@@ -1,5 +1,10 @@
 //! `Film` and `PixelFilter`.
 
+use tyndall::{
+    feature::{Facing, Feature, Space},
+    film::{Average, LayerKind},
+};
+
 use super::Reader;
 use super::params::Params;
 use super::parser::Statement;
@@ -11,7 +16,17 @@ impl FilmDesc {
     /// The film of a file that has none.
     pub(super) fn pbrt_default(span: Span) -> Self {
         let filter = FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 };
-        Self { span, width: 1280, height: 720, crop: None, filename: None, filter, exposure: 1.0 }
+        Self {
+            span,
+            width: 1280,
+            height: 720,
+            crop: None,
+            filename: None,
+            diagonal: 35.0,
+            filter,
+            layers: Vec::new(),
+            exposure: 1.0,
+        }
     }
 }
 
@@ -21,8 +36,12 @@ const MAX_SIDE: u32 = 1 << 16;
 impl Reader {
     pub(super) fn film(&mut self, mut s: Statement<'_>) {
         let name = s.names[0].clone();
-        if name.value != "rgb" {
-            return self.unknown_kind("film", &name, &["rgb"], &["gbuffer", "spectral"]);
+        if !["rgb", "gbuffer"].contains(&&*name.value) {
+            return self.unknown_kind("film", &name, &["rgb", "gbuffer"], &["spectral"]);
+        }
+        if name.value == "gbuffer" {
+            let reason = "dzdx, dzdy and variances are not written: the layer `stderr` has the standard errors";
+            self.ignore(name.span, reason);
         }
         let mut p = self.params("film", &mut s, &[]);
         let [width, height] = ["xresolution", "yresolution"].map(|side| {
@@ -36,7 +55,7 @@ impl Reader {
         let crop = crop(&mut p, width, height);
         let filename = p.string_opt("filename");
         let exposure = p.positive("iso", 100.0).value / 100.0;
-        p.ignore("diagonal", "the perspective camera does not depend on the size of the film");
+        let diagonal = p.positive("diagonal", 35.0).value;
         p.ignore("savefp16", "images are written in single precision");
         p.later_unless("whitebalance", 0.0);
         p.later("maxcomponentvalue");
@@ -48,12 +67,14 @@ impl Reader {
                     .help("use \"cie1931\", the default"),
             );
         }
+        let layers = if name.value == "gbuffer" { gbuffer(&mut p) } else { Vec::new() };
         self.finish_params(p);
         if self.settings.film.is_some() {
             self.ignore(s.whole, "it replaces the film before");
         }
         let filter = FilmDesc::pbrt_default(s.whole).filter;
-        self.settings.film = Some(FilmDesc { span: s.whole, width, height, crop, filename, filter, exposure });
+        self.settings.film =
+            Some(FilmDesc { span: s.whole, width, height, crop, filename, diagonal, filter, layers, exposure });
     }
 
     pub(super) fn filter(&mut self, mut s: Statement<'_>) {
@@ -77,6 +98,33 @@ impl Reader {
         self.finish_params(p);
         self.settings.filter = Some(filter);
     }
+}
+
+/// The layers of pbrt's `gbuffer`, by their names there.
+fn gbuffer(p: &mut Params) -> Vec<LayerKind> {
+    let space = match p.string_opt("coordinatesystem") {
+        Some(word) if word.value == "world" => Space::World,
+        Some(word) if word.value != "camera" => {
+            let error = SceneError::at(word.span, format!("there is no coordinate system \"{}\"", word.value));
+            p.error(error.suggest(&word.value, ["camera", "world"]));
+            Space::Camera
+        }
+        _ => Space::Camera,
+    };
+    let layer = |feature, average, channels: &[&str]| LayerKind {
+        feature,
+        average,
+        channels: channels.iter().map(ToString::to_string).collect(),
+    };
+    let (geometric, shading) =
+        (Feature::GeometricNormal(space, Facing::Viewer), Feature::ShadingNormal(space, Facing::Viewer));
+    vec![
+        layer(Feature::Albedo, Average::Samples, &["Albedo.R", "Albedo.G", "Albedo.B"]),
+        layer(Feature::Position(space), Average::Hits, &["P.X", "P.Y", "P.Z"]),
+        layer(geometric, Average::Directions, &["N.X", "N.Y", "N.Z"]),
+        layer(shading, Average::Directions, &["Ns.X", "Ns.Y", "Ns.Z"]),
+        layer(Feature::Uv, Average::Hits, &["u", "v"]),
+    ]
 }
 
 /// The part of the film that is rendered: `cropwindow` in parts of the image, or `pixelbounds`; the first wins.

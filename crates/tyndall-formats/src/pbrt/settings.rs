@@ -3,7 +3,7 @@
 use super::Reader;
 use super::params::quote;
 use super::parser::Statement;
-use crate::desc::{CameraDesc, FilmDesc, FilterDesc, IntegratorDesc, LengthUnit, Options, SamplerDesc};
+use crate::desc::{CameraDesc, CameraKind, FilmDesc, FilterDesc, IntegratorDesc, LengthUnit, Options, SamplerDesc};
 use crate::error::{ErrorList, SceneError};
 use crate::source::{Span, Spanned};
 
@@ -44,13 +44,18 @@ impl Settings {
         let mut film = self.film.unwrap_or_else(|| FilmDesc::pbrt_default(start));
         film.filter = self.filter.unwrap_or(film.filter);
         film.exposure *= self.shutter.unwrap_or(1.0);
+        let mut camera = self.camera.unwrap_or_else(|| CameraDesc::pbrt_default(start));
+        // Where a scene does not say its unit, pbrt takes it for a metre as far as lenses are concerned.
+        if let (CameraKind::Realistic(realistic), Some(unit)) = (&mut camera.kind, &self.unit) {
+            realistic.millimetre = 1.0 / unit.value.millimetres();
+        }
         let named = |name: &str| Spanned::new(name.to_string(), start);
         AllSettings {
             options: Options {
                 unit: self.unit.unwrap_or(Spanned::new(LengthUnit::Millimetre, start)),
                 seed: self.seed,
             },
-            camera: self.camera.unwrap_or_else(|| CameraDesc::pbrt_default(start)),
+            camera,
             film,
             sampler: self.sampler.unwrap_or_else(|| SamplerDesc {
                 kind: named("zsobol"),
@@ -62,6 +67,7 @@ impl Settings {
                 max_depth: None,
                 rr_depth: None,
                 hide_emitters: false,
+                layers: Vec::new(),
             }),
         }
     }
@@ -84,11 +90,28 @@ const LATER_OPTIONS: [&str; 3] = ["disablepixeljitter", "disablewavelengthjitter
 /// Samplers of pbrt. tyndall has its own.
 const SAMPLERS: [&str; 7] = ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"];
 
-/// Integrators that are mapped to ours.
-const INTEGRATORS: [&str; 4] = ["path", "volpath", "simplepath", "simplevolpath"];
-/// Integrators of pbrt that have no counterpart here.
-const LATER_INTEGRATORS: [&str; 8] =
-    ["ambientocclusion", "bdpt", "function", "lightpath", "mlt", "randomwalk", "sppm", "simplebdpt"];
+/// Integrators of pbrt, with what is different here: tyndall has one for all light, by light sampling and directions at
+/// once, through surfaces and media alike.
+const INTEGRATORS: [(&str, Option<&str>); 9] = [
+    ("path", None),
+    ("volpath", None),
+    ("simplepath", None),
+    ("simplevolpath", None),
+    ("randomwalk", Some("lights are sampled too: the same image with less noise")),
+    ("lightpath", Some("paths start at the camera: mirrors and glass are seen too")),
+    ("bdpt", Some("paths start at the camera only: the same image, caustics with more noise")),
+    ("mlt", Some("samples are independent: the same image, caustics with more noise")),
+    ("sppm", Some("no photons are gathered: the same image without their blur, caustics with more noise")),
+];
+/// Integrators of pbrt that make another image, with what to do instead.
+const OTHER_INTEGRATORS: [(&str, &str); 3] = [
+    (
+        "ambientocclusion",
+        "give all shapes a white diffuse material under a constant infinite light of 1, with \"volpath\"",
+    ),
+    ("function", "it renders no scene, but draws a function over the pixel"),
+    ("simplebdpt", "use \"volpath\""),
+];
 
 impl Reader {
     pub(super) fn option(&mut self, s: &Statement<'_>) {
@@ -154,8 +177,15 @@ impl Reader {
 
     pub(super) fn integrator(&mut self, mut s: Statement<'_>) {
         let name = s.names[0].clone();
-        if !INTEGRATORS.contains(&&*name.value) {
-            return self.unknown_kind("integrator", &name, &INTEGRATORS, &LATER_INTEGRATORS);
+        if let Some((word, advice)) = OTHER_INTEGRATORS.into_iter().find(|(word, _)| *word == name.value) {
+            let message = format!("the integrator {} is not known here", quote(word));
+            return self.errors.push(SceneError::not_yet(name.span, message).help(advice));
+        }
+        let Some((_, difference)) = INTEGRATORS.into_iter().find(|(word, _)| *word == name.value) else {
+            return self.unknown_kind("integrator", &name, &INTEGRATORS.map(|i| i.0), &[]);
+        };
+        if let Some(difference) = difference {
+            self.ignore(name.span, difference);
         }
         let mut p = self.params("integrator", &mut s, &[]);
         let max_depth = p.count_opt("maxdepth", 0);
@@ -166,11 +196,20 @@ impl Reader {
                     .help("leave out \"bool regularize\""),
             );
         }
+        let machinery: &[&str] = match &*name.value {
+            "bdpt" => &["visualizestrategies", "visualizeweights"],
+            "mlt" => &["bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"],
+            "sppm" => &["photonsperiteration", "radius", "seed"],
+            _ => &[],
+        };
+        for word in machinery {
+            p.ignore(word, "it belongs to an integrator that is not used here");
+        }
         p.ignore("samplelights", "light sampling never changes the mean");
         p.ignore("samplebsdf", "how directions are sampled never changes the mean");
         self.finish_params(p);
-        let (rr_depth, hide_emitters) = (None, false);
+        let (rr_depth, hide_emitters, layers) = (None, false, Vec::new());
         self.settings.integrator =
-            Some(IntegratorDesc { name: name.map(Into::into), max_depth, rr_depth, hide_emitters });
+            Some(IntegratorDesc { name: name.map(Into::into), max_depth, rr_depth, hide_emitters, layers });
     }
 }

@@ -27,9 +27,11 @@ impl Reader {
             _ => ply(&mut p),
         };
         let opacity = p.number("alpha", &self.textures, |_| true).filter(|a| a.value.number().is_none_or(|a| a < 1.0));
+        // tyndall's own.
+        let priority = p.integer_opt("priority");
         self.finish_params(p);
         if let Some(kind) = kind {
-            let shape = ShapeDesc { opacity, ..self.bound(&s, kind) };
+            let shape = ShapeDesc { opacity, priority, ..self.bound(&s, kind) };
             self.place(shape);
         }
     }
@@ -54,6 +56,7 @@ impl Reader {
             opacity: None,
             emission: now.area_light.as_deref().cloned(),
             interface: now.interface,
+            priority: None,
         }
     }
 

@@ -1,8 +1,10 @@
 //! Reconstruction filters, by importance sampling (Ernst et al. 2006): a pixel's estimate is
 //! `E[ f(x)/p(x) · L(x) ]`, with the offset `x` drawn from `p ∝ |f|`, so that each sample belongs to one pixel.
 
+use super::Lobed;
+
 /// A filter over offsets from the pixel's centre [pixels], normalised to unit integral.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Filter {
     /// Constant over `|x| ≤ rx`, `|y| ≤ ry`.
     Box {
@@ -21,6 +23,8 @@ pub enum Filter {
         /// Standard deviation [pixels].
         sigma: f32,
     },
+    /// One that is negative in places: Mitchell's, or a windowed sinc.
+    Lobed(Lobed),
 }
 
 impl Default for Filter {
@@ -30,15 +34,17 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// An offset from the pixel's centre [pixels] for two uniform numbers; its density is the filter itself.
+    /// An offset from the pixel's centre [pixels] for two uniform numbers, and its weight `f/p` [1]: 1 where the filter is
+    /// the density.
     #[inline]
-    pub fn sample(&self, u: [f32; 2]) -> [f32; 2] {
-        let axis = |i: usize| match *self {
-            Self::Box { radius } => radius[i] * (2.0 * u[i] - 1.0),
-            Self::Triangle { radius } => radius[i] * tent(u[i]),
-            Self::Gaussian { radius, sigma } => truncated_gaussian(u[i], radius[i], sigma),
-        };
-        [axis(0), axis(1)]
+    pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
+        let both = |axis: &dyn Fn(usize) -> f32| ([axis(0), axis(1)], 1.0);
+        match self {
+            Self::Box { radius } => both(&|i| radius[i] * (2.0 * u[i] - 1.0)),
+            Self::Triangle { radius } => both(&|i| radius[i] * tent(u[i])),
+            Self::Gaussian { radius, sigma } => both(&|i| truncated_gaussian(u[i], radius[i], *sigma)),
+            Self::Lobed(lobed) => lobed.sample(u),
+        }
     }
 }
 
@@ -103,7 +109,9 @@ mod tests {
             let (mut m1, mut m2) = (0.0, 0.0);
             for i in 0..n {
                 let u = (i as f32 + 0.5) / n as f32;
-                let x = f64::from(filter.sample([u, 0.5])[0]);
+                let ([x, _], weight) = filter.sample([u, 0.5]);
+                assert_eq!(weight, 1.0);
+                let x = f64::from(x);
                 m1 += x / f64::from(n);
                 m2 += x * x / f64::from(n);
             }

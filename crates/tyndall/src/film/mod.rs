@@ -4,8 +4,12 @@
 //! of the image is the image of the crop, and films of the same scene merge by addition.
 
 pub mod filter;
+pub mod layer;
+pub mod lobed;
 
 pub use filter::Filter;
+pub use layer::{Average, Cell, Layer, LayerKind};
+pub use lobed::{Kernel, Lobed};
 
 /// A rectangle of pixels, `min ≤ (x, y) < max`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,15 +85,18 @@ impl Pixel {
 
     /// Standard error of the mean, `√((Σx² − (Σx)²/n) / (n(n−1)))`; infinite for fewer than two samples.
     pub fn standard_error(&self) -> [f32; 3] {
-        if self.count < 2 {
-            return [f32::INFINITY; 3];
-        }
-        let n = self.count as f64;
-        std::array::from_fn(|c| {
-            let spread = (self.sum_of_squares[c] - self.sum[c] * self.sum[c] / n).max(0.0);
-            (spread / (n * (n - 1.0))).sqrt() as f32
-        })
+        std::array::from_fn(|c| standard_error(self.sum[c], self.sum_of_squares[c], self.count))
     }
+}
+
+/// `√((Σx² − (Σx)²/n) / (n(n−1)))`; infinite for fewer than two samples.
+pub(crate) fn standard_error(sum: f64, sum_of_squares: f64, count: u64) -> f32 {
+    if count < 2 {
+        return f32::INFINITY;
+    }
+    let n = count as f64;
+    let spread = (sum_of_squares - sum * sum / n).max(0.0);
+    (spread / (n * (n - 1.0))).sqrt() as f32
 }
 
 /// The pixels of a crop of an image.
@@ -103,6 +110,8 @@ pub struct Film {
     pub crop: Crop,
     /// Row by row, the crop only.
     pub pixels: Vec<Pixel>,
+    /// What is recorded beside light.
+    pub layers: Vec<Layer>,
 }
 
 impl Film {
@@ -110,7 +119,15 @@ impl Film {
     pub fn new(width: u32, height: u32, crop: Crop) -> Self {
         let crop = crop.within(width, height);
         let pixels = vec![Pixel::default(); crop.width() as usize * crop.height() as usize];
-        Self { width, height, crop, pixels }
+        Self { width, height, crop, pixels, layers: Vec::new() }
+    }
+
+    /// The same, with layers.
+    #[must_use]
+    pub fn with_layers(self, kinds: &[LayerKind]) -> Self {
+        let cells = vec![Cell::default(); self.pixels.len()];
+        let layers = kinds.iter().map(|kind| Layer { kind: kind.clone(), cells: cells.clone() }).collect();
+        Self { layers, ..self }
     }
 
     /// The pixel at image coordinates `(x, y)`; `None` outside the crop.
@@ -123,10 +140,19 @@ impl Film {
     /// Adds the samples of a film of the same image and crop.
     ///
     /// # Errors
-    /// The two films are not of the same image and crop.
+    /// The two films are not of the same image and crop, or record different things.
     pub fn merge(&mut self, other: &Self) -> Result<(), FilmMismatch> {
         if (self.width, self.height, self.crop) != (other.width, other.height, other.crop) {
             return Err(FilmMismatch);
+        }
+        let kinds = |film: &Self| film.layers.iter().map(|layer| layer.kind.clone()).collect::<Vec<_>>();
+        if kinds(self) != kinds(other) {
+            return Err(FilmMismatch);
+        }
+        for (mine, theirs) in self.layers.iter_mut().zip(&other.layers) {
+            for (a, b) in mine.cells.iter_mut().zip(&theirs.cells) {
+                a.merge(b);
+            }
         }
         for (a, b) in self.pixels.iter_mut().zip(&other.pixels) {
             a.merge(b);
@@ -137,7 +163,7 @@ impl Film {
 
 /// Two films of different images or crops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the films differ in size or crop, so their samples cannot be added")]
+#[error("the films differ in size, crop or layers, so their samples cannot be added")]
 pub struct FilmMismatch;
 
 #[cfg(test)]

@@ -6,10 +6,11 @@
 
 use super::{Integrator, in_one_lane};
 use crate::{
+    bsdf::Bsdf,
     light::Light,
     material::Material,
-    math::{Ray, Vec2},
-    medium::{Inside, MediumInterface},
+    math::{Ray, Vec2, Vec3},
+    medium::{Inside, Within},
     path::{History, Vertex, shadow},
     sampling::Sampler,
     scene::Scene,
@@ -37,7 +38,8 @@ impl Integrator for Analog {
 
 /// The radiance along `ray` in one lane.
 fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut Sampler, tally: &mut Tally) -> f32 {
-    let mut inside = Inside::of(scene, scene.camera.medium, w);
+    let mut within = *scene.around_camera();
+    let mut inside = within.inside(scene, w);
     let (mut radiance, mut throughput) = (0.0, 1.0);
     let mut history = History::default();
     loop {
@@ -47,10 +49,17 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
         tally.rays += 1;
         let hit = scene.first_surface(&ray, flight);
 
-        let (vertex, interface) = match hit {
+        let (vertex, beyond) = match hit {
             None if flight.is_finite() => {
                 tally.collisions += 1;
-                let Inside::Medium { id, phase, .. } = inside else { return radiance };
+                let (id, phase, share) = match &inside {
+                    Inside::Vacuum => return radiance,
+                    Inside::Medium { id, phase, .. } => (*id, *phase, 1.0),
+                    Inside::Mixture { .. } => match within.choose_part(scene, w, lane, sampler.next_1d()) {
+                        None => return radiance,
+                        Some(part) => (part.id, part.phase, part.share.lane(lane) / part.probability.lane(lane)),
+                    },
+                };
                 let p = ray.at(flight);
                 if !scene.may_contain(id, p) {
                     tally.leaks += 1;
@@ -60,7 +69,8 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                     // Absorbed; and what absorbs emits L_e.
                     return if source > 0.0 { radiance + throughput * source / (sigma_t - sigma_s) } else { radiance };
                 }
-                (Vertex::Medium { p, dir: ray.dir, phase }, None)
+                throughput *= share; // 0 where nothing scatters, else 1
+                (Vertex::Medium { p, dir: ray.dir, phase }, within)
             }
             None => {
                 let sky = scene
@@ -71,7 +81,8 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                 return radiance + throughput * sky.sum::<f32>();
             }
             Some(hit) => {
-                let surface = scene.geometry.interaction(&ray, &hit);
+                let mut surface = scene.geometry.interaction(&ray, &hit);
+                let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, w, lane, tally);
                 let material = scene.meet(&surface, ray.dir, || sampler.next_1d());
                 if matches!(material, Material::Hole) {
                     ray = surface.spawn(ray.dir);
@@ -80,18 +91,18 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                 if let Some((_, light)) = scene.light_at(&surface) {
                     radiance += throughput * light.le(surface.ng, -ray.dir, w).lane(lane);
                 }
-                let interface = scene.object(&surface).interface.map(|i| (i, surface.ng));
-                if matches!(material, Material::Null) {
-                    inside = beyond(scene, inside, interface, &ray, w);
+                let bsdf = skin.bsdf(material, &surface, w, lane);
+                if matches!(bsdf, Bsdf::Null) {
+                    (within, inside) = (beyond, beyond.inside(scene, w));
                     ray = surface.spawn(ray.dir);
                     continue;
                 }
                 tally.surface_vertices += 1;
-                (Vertex::surface(surface, material.bsdf(&(&surface).into(), w, lane), ray.dir), interface)
+                (Vertex::surface(surface, bsdf, ray.dir), beyond)
             }
         };
 
-        radiance += throughput * dirac_lights(scene, &vertex, inside, interface, w, lane, sampler, tally);
+        radiance += throughput * dirac_lights(scene, &vertex, ray.dir, [&within, &beyond], (w, lane), sampler, tally);
         let Some(next) = vertex.sample([sampler.next_1d(), sampler.next_1d(), sampler.next_1d()]) else {
             return radiance;
         };
@@ -110,31 +121,19 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
         }
         ray = next.ray;
         if next.crossed {
-            inside = beyond(scene, inside, interface, &ray, w);
+            (within, inside) = (beyond, beyond.inside(scene, w));
         }
     }
 }
 
-/// The medium behind a surface that a ray leaves.
-fn beyond(
-    scene: &Scene,
-    inside: Inside,
-    interface: Option<(MediumInterface, crate::math::Vec3)>,
-    ray: &Ray,
-    w: &Wavelengths,
-) -> Inside {
-    interface.map_or(inside, |(media, ng)| Inside::of(scene, media.towards(ray.dir.dot(ng)), w))
-}
-
-/// What lights without extent give at a vertex: all of them. Lights without a surface belong to them.
-#[allow(clippy::too_many_arguments)] // what a path is, in pieces
+/// What lights without extent give at a vertex that was reached along `dir`: all of them. Lights without a surface belong
+/// to them.
 fn dirac_lights(
     scene: &Scene,
     vertex: &Vertex,
-    inside: Inside,
-    interface: Option<(MediumInterface, crate::math::Vec3)>,
-    w: &Wavelengths,
-    lane: usize,
+    dir: Vec3,
+    [within, beyond]: [&Within; 2],
+    (w, lane): (&Wavelengths, usize),
     sampler: &mut Sampler,
     tally: &mut Tally,
 ) -> f32 {
@@ -153,9 +152,12 @@ fn dirac_lights(
         let Some(sample) = light.sample(&reference, u, w) else { continue };
         let f = vertex.eval(sample.dir).0.lane(lane);
         let origin = vertex.shadow_origin(sample.dir);
-        let start = beyond(scene, inside, interface, &Ray::new(origin, sample.dir), w);
+        let crosses =
+            |v: &Vertex| matches!(v, Vertex::Surface { hit, .. } if dir.dot(hit.ng) * sample.dir.dot(hit.ng) > 0.0);
+        let from = if crosses(vertex) { beyond } else { within };
+        let start = (from.inside(scene, w), from);
         if f > 0.0
-            && let Some(t) = shadow::transmittance(scene, origin, sample.dir, &sample.target, start, w, tally)
+            && let Some(t) = shadow::transmittance(scene, origin, sample.dir, &sample.target, start, (w, lane), tally)
         {
             sum += f * sample.li.lane(lane) * t.lane(lane) / sample.pdf;
         }

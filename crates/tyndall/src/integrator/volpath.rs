@@ -6,7 +6,7 @@ use crate::{
     light::{Light, Reference},
     material::Material,
     math::Ray,
-    medium::Inside,
+    medium::{Inside, Skin, Within},
     path::{Event, History, Path, Vertex, shadow},
     sampling::Sampler,
     scene::Scene,
@@ -92,31 +92,35 @@ impl Path {
                 self.find_environment(scene, sink);
                 Status::Done
             }
-            Event::Surface(hit) => {
+            Event::Surface(mut hit) => {
+                let skin = if scene.has_bodies() { self.meet(scene, &mut hit, tally) } else { Skin::Written };
                 let sampler = &mut self.sampler;
-                match scene.meet(&hit, self.ray.dir, || sampler.next_1d()) {
-                    Material::Hole => {
+                let material = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
+                let (bsdf, disperses) = match (skin, material) {
+                    (_, Material::Hole) => {
                         self.pass_opening(scene, &hit);
                         self.ray = hit.spawn(self.ray.dir);
-                        Status::Alive
+                        return Status::Alive;
                     }
-                    Material::Null => {
+                    (Skin::Open, _) | (Skin::Written, Material::Null) => {
                         self.find_emitter(scene, &hit, sink);
                         self.cross(scene, &hit);
-                        Status::Alive
+                        return Status::Alive;
                     }
-                    material => {
-                        self.find_emitter(scene, &hit, sink);
-                        tally.surface_vertices += 1;
-                        let bsdf = material.bsdf(&(&hit).into(), &self.wavelengths, self.hero);
-                        let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
-                        self.scatter(scene, settings, &vertex, material.disperses(), sink, tally)
+                    (Skin::Written, material) => {
+                        (material.bsdf(&(&hit).into(), &self.wavelengths, self.hero), material.disperses())
                     }
-                }
+                    (Skin::Between { eta, disperses }, material) => {
+                        (material.bsdf_between(eta, &(&hit).into(), &self.wavelengths), disperses)
+                    }
+                };
+                self.find_emitter(scene, &hit, sink);
+                tally.surface_vertices += 1;
+                let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
+                self.scatter(scene, settings, &vertex, disperses, sink, tally)
             }
-            Event::Scatter { p, emitted } => {
+            Event::Scatter { p, phase, emitted } => {
                 self.find_emission(emitted, sink);
-                let Inside::Medium { phase, .. } = self.inside else { return Status::Done };
                 self.history.order += 1;
                 let vertex = Vertex::Medium { p, dir: self.ray.dir, phase };
                 self.scatter(scene, settings, &vertex, false, sink, tally)
@@ -171,6 +175,14 @@ impl Path {
         self.ray = hit.spawn(self.ray.dir);
     }
 
+    /// Finds out what is at a surface where bodies can overlap, and what is behind it.
+    #[inline(never)]
+    fn meet(&mut self, scene: &Scene, hit: &mut Interaction, tally: &mut Tally) -> Skin {
+        let (skin, beyond) = self.within.meet(scene, hit, self.ray.dir, &self.wavelengths, self.hero, tally);
+        self.beyond = beyond;
+        skin
+    }
+
     /// A surface that is open in part was passed with that probability: as a medium is, for light sampling through it.
     fn pass_opening(&mut self, scene: &Scene, hit: &Interaction) {
         self.history.passed();
@@ -182,6 +194,11 @@ impl Path {
 
     /// Enters the medium on the far side of a surface.
     fn enter(&mut self, scene: &Scene, hit: &Interaction) {
+        if scene.has_bodies() {
+            self.within = self.beyond;
+            self.inside = self.within.inside(scene, &self.wavelengths);
+            return;
+        }
         if let Some(interface) = scene.object(hit).interface {
             let medium = interface.towards(self.ray.dir.dot(hit.ng));
             self.inside = Inside::of(scene, medium, &self.wavelengths);
@@ -265,13 +282,14 @@ impl Path {
         if f.is_zero() {
             return;
         }
-        let inside = self.inside_towards(scene, vertex, sample.dir);
+        let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
         if !scene.light_can_reach(inside.id()) {
             return;
         }
         let origin = vertex.shadow_origin(sample.dir);
+        let wavelengths = (&self.wavelengths, self.hero);
         let arrives =
-            shadow::transmittance(scene, origin, sample.dir, &sample.target, inside, &self.wavelengths, tally);
+            shadow::transmittance(scene, origin, sample.dir, &sample.target, (inside, within), wavelengths, tally);
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
             let weight = self.weights.light_sample(probability * sample.pdf, scatter_pdf, transmittance);
@@ -279,16 +297,20 @@ impl Path {
         }
     }
 
-    /// The medium that a ray from `vertex` towards `dir` starts in.
+    /// The medium, and the bodies, that a ray from `vertex` towards `dir` starts in.
     #[inline]
-    fn inside_towards(&self, scene: &Scene, vertex: &Vertex, dir: crate::math::Vec3) -> Inside {
+    fn inside_towards(&self, scene: &Scene, vertex: &Vertex, dir: crate::math::Vec3) -> (Inside, &Within) {
         match vertex {
             Vertex::Surface { hit, .. } if dir.dot(hit.ng) * self.ray.dir.dot(hit.ng) > 0.0 => {
-                scene.object(hit).interface.map_or(self.inside, |interface| {
+                if scene.has_bodies() {
+                    return (self.beyond.inside(scene, &self.wavelengths), &self.beyond);
+                }
+                let inside = scene.object(hit).interface.map_or(self.inside, |interface| {
                     Inside::of(scene, interface.towards(dir.dot(hit.ng)), &self.wavelengths)
-                })
+                });
+                (inside, &self.within)
             }
-            _ => self.inside,
+            _ => (self.inside, &self.within),
         }
     }
 

@@ -17,7 +17,7 @@ use crate::{
     light::Target,
     material::Material,
     math::{Ray, Vec3, rounding::gamma},
-    medium::Inside,
+    medium::{Inside, MediumId, Within},
     path::{Vertex, shadow},
     phase::Phase,
     sampling::{Sampler, warp},
@@ -81,7 +81,9 @@ impl Div<f32> for Radiance {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     place: Place,
-    /// The medium on the side from which the point was reached.
+    /// What was around it on the side from which it was reached.
+    within: Within,
+    /// The medium there.
     inside: Inside,
     /// Its distance from where the ray that found it began [length]: the slides' `|y − x|`.
     pub(super) distance: f32,
@@ -90,7 +92,7 @@ pub(super) struct Point {
 #[derive(Debug, Clone, Copy)]
 enum Place {
     Eye(Vec3),
-    Surface { hit: Interaction, bsdf: Bsdf, from_outside: bool },
+    Surface { hit: Interaction, bsdf: Bsdf, from_outside: bool, beyond: Within },
     Collision { p: Vec3, phase: Phase },
     Infinity,
 }
@@ -171,12 +173,12 @@ impl<'a> World<'a> {
 
     /// The eye at `p`.
     pub(super) fn eye(&self, p: Vec3) -> Point {
-        let inside = if self.sees_media {
-            Inside::of(self.scene, self.scene.camera.medium, &self.wavelengths)
-        } else {
-            Inside::Vacuum
-        };
-        Point { place: Place::Eye(p), inside, distance: 0.0 }
+        let within = *self.scene.around_camera();
+        Point { place: Place::Eye(p), within, inside: self.inside(&within), distance: 0.0 }
+    }
+
+    fn inside(&self, within: &Within) -> Inside {
+        if self.sees_media { within.inside(self.scene, &self.wavelengths) } else { Inside::Vacuum }
     }
 
     /// The estimate of a walk that has ended, its loss tallied.
@@ -200,24 +202,27 @@ impl<'a> World<'a> {
         }
         self.depth += 1;
         self.tally.rays += 1;
-        let (mut ray, inside) = self.leave(x, omega);
+        let (mut ray, within) = self.leave(x, omega);
+        let inside = self.inside(&within);
         let mut gone = 0.0;
         loop {
             let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
-                return Some(Point { place: Place::Infinity, inside, distance: f32::INFINITY });
+                return Some(Point { place: Place::Infinity, within, inside, distance: f32::INFINITY });
             };
             // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
             let distance = gone + hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
-            let met = self.scene.geometry.interaction(&ray, &hit);
-            let material = self.scene.meet(&met, omega, || self.sampler.next_1d());
+            let t = hit.t;
+            let mut hit = self.scene.geometry.interaction(&ray, &hit);
+            let (skin, beyond) = within.meet(self.scene, &mut hit, omega, &self.wavelengths, self.lane, self.tally);
+            let material = self.scene.meet(&hit, omega, || self.sampler.next_1d());
             if matches!(material, Material::Hole) {
-                gone += hit.t;
-                ray = met.spawn(omega);
+                gone += t;
+                ray = hit.spawn(omega);
                 continue;
             }
-            let bsdf = material.bsdf(&(&met).into(), &self.wavelengths, self.lane);
-            let from_outside = omega.dot(met.ng) < 0.0;
-            return Some(Point { place: Place::Surface { hit: met, bsdf, from_outside }, inside, distance });
+            let bsdf = skin.bsdf(material, &hit, &self.wavelengths, self.lane);
+            let from_outside = omega.dot(hit.ng) < 0.0;
+            return Some(Point { place: Place::Surface { hit, bsdf, from_outside, beyond }, within, inside, distance });
         }
     }
 
@@ -230,21 +235,16 @@ impl<'a> World<'a> {
         Some(y)
     }
 
-    /// The ray from `x` along `ω`, and the medium that it starts in.
-    fn leave(&self, x: &Point, omega: Vec3) -> (Ray, Inside) {
+    /// The ray from `x` along `ω`, and what it starts within.
+    #[allow(clippy::unused_self)] // the slides' primitives are called alike
+    fn leave(&self, x: &Point, omega: Vec3) -> (Ray, Within) {
         match &x.place {
-            Place::Surface { hit, from_outside, .. } => {
+            Place::Surface { hit, from_outside, beyond, .. } => {
                 let crossed = (omega.dot(hit.ng) > 0.0) != *from_outside;
-                let inside = match self.scene.object(hit).interface {
-                    Some(interface) if crossed && self.sees_media => {
-                        Inside::of(self.scene, interface.towards(omega.dot(hit.ng)), &self.wavelengths)
-                    }
-                    _ => x.inside,
-                };
-                (hit.spawn(omega), inside)
+                (hit.spawn(omega), if crossed { *beyond } else { x.within })
             }
-            Place::Eye(p) | Place::Collision { p, .. } => (Ray::new(*p, omega), x.inside),
-            Place::Infinity => (Ray::new(Vec3::INFINITY, omega), x.inside),
+            Place::Eye(p) | Place::Collision { p, .. } => (Ray::new(*p, omega), x.within),
+            Place::Infinity => (Ray::new(Vec3::INFINITY, omega), x.within),
         }
     }
 
@@ -261,14 +261,27 @@ impl<'a> World<'a> {
     /// The collision `x′ = x + sω` before `y`. One that rounding has carried out of its medium is tallied, and black.
     pub(super) fn collision(&mut self, x: &Point, s: f32, omega: Vec3, y: &Point) -> Point {
         let p = self.leave(x, omega).0.at(s);
-        match y.inside {
-            Inside::Medium { id, phase, .. } if self.scene.may_contain(id, p) => {
+        match self.scatterer(y) {
+            Some((id, phase)) if self.scene.may_contain(id, p) => {
                 self.tally.collisions += 1;
-                Point { place: Place::Collision { p, phase }, inside: y.inside, distance: s }
+                Point { place: Place::Collision { p, phase }, within: y.within, inside: y.inside, distance: s }
             }
             _ => {
                 self.tally.leaks += 1;
-                Point { place: Place::Infinity, inside: Inside::Vacuum, distance: s }
+                Point { place: Place::Infinity, within: y.within, inside: Inside::Vacuum, distance: s }
+            }
+        }
+    }
+
+    /// The medium that scatters on the way to `y`: where several share the place, one of them by chance.
+    fn scatterer(&mut self, y: &Point) -> Option<(MediumId, Phase)> {
+        match y.inside {
+            Inside::Vacuum => None,
+            Inside::Medium { id, phase, .. } => Some((id, phase)),
+            Inside::Mixture { .. } => {
+                let u = self.random();
+                let part = y.within.choose_part(self.scene, &self.wavelengths, self.lane, u)?;
+                Some((part.id, part.phase))
             }
         }
     }
@@ -371,15 +384,17 @@ impl<'a> World<'a> {
 
     /// Whether `y` is the first thing that a ray from `x` along `ω′` meets: 1 or 0, or what is open of the surfaces between.
     pub(super) fn visibility(&mut self, x: &Point, omega_prime: Vec3, y: &Luminaire) -> f32 {
-        let origin = self.leave(x, omega_prime).0.origin;
-        shadow::visible(self.scene, origin, omega_prime, &y.target, self.tally)
+        let (ray, within) = self.leave(x, omega_prime);
+        let wavelengths = (&self.wavelengths, self.lane);
+        shadow::visible(self.scene, ray.origin, omega_prime, &y.target, &within, wavelengths, self.tally)
     }
 
     /// `attenuation(x, y)`: `exp(−∫ σ_t)` from `x` along `ω′` to `y`, 0 where a surface stands between.
     pub(super) fn attenuation(&mut self, x: &Point, omega_prime: Vec3, y: &Luminaire) -> f32 {
-        let (ray, inside) = self.leave(x, omega_prime);
-        let scene = self.scene;
-        shadow::transmittance(scene, ray.origin, omega_prime, &y.target, inside, &self.wavelengths, self.tally)
+        let (ray, within) = self.leave(x, omega_prime);
+        let (scene, start) = (self.scene, (self.inside(&within), &within));
+        let wavelengths = (&self.wavelengths, self.lane);
+        shadow::transmittance(scene, ray.origin, omega_prime, &y.target, start, wavelengths, self.tally)
             .map_or(0.0, |t| t.lane(self.lane))
     }
 }

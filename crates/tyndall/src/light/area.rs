@@ -77,10 +77,10 @@ pub enum EmitterShape {
 
 /// A point on an emitter: place, unit normal, bound on the rounding error.
 #[derive(Debug, Clone, Copy)]
-struct Point {
-    p: Vec3,
-    ng: Vec3,
-    error: Vec3,
+pub(crate) struct Point {
+    pub(crate) p: Vec3,
+    pub(crate) ng: Vec3,
+    pub(crate) error: Vec3,
 }
 
 impl EmitterShape {
@@ -141,7 +141,7 @@ impl EmitterShape {
     }
 
     /// Uniform in area.
-    fn sample_area(&self, u: Vec2) -> Point {
+    pub(crate) fn sample_area(&self, u: Vec2) -> Point {
         match *self {
             Self::Triangle { a, e1, e2, ng } => {
                 let [_, b1, b2] = warp::triangle(u);

@@ -194,7 +194,7 @@ pub enum EnvironmentError {
 }
 
 /// Square to sphere, equal areas to equal solid angles (Clarberg 2008).
-fn equal_area_sphere(uv: Vec2) -> Vec3 {
+pub(crate) fn equal_area_sphere(uv: Vec2) -> Vec3 {
     let (u, v) = (2.0 * uv.x - 1.0, 2.0 * uv.y - 1.0);
     let signed_distance = 1.0 - (u.abs() + v.abs());
     let r = 1.0 - signed_distance.abs();

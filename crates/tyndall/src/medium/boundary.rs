@@ -34,6 +34,11 @@ pub enum Inside {
         /// Its phase function.
         phase: Phase,
     },
+    /// Several media share the place: their coefficients are added. Which they are, [`super::Within`] knows.
+    Mixture {
+        /// The sums.
+        coefficients: Coefficients,
+    },
 }
 
 impl Inside {
@@ -46,10 +51,10 @@ impl Inside {
         })
     }
 
-    /// Its id, `None` for vacuum.
+    /// Its id, `None` for vacuum and for a mixture.
     pub fn id(&self) -> Option<MediumId> {
         match self {
-            Self::Vacuum => None,
+            Self::Vacuum | Self::Mixture { .. } => None,
             Self::Medium { id, .. } => Some(*id),
         }
     }
@@ -59,7 +64,7 @@ impl Inside {
     pub fn coefficients(&self) -> Option<&Coefficients> {
         match self {
             Self::Vacuum => None,
-            Self::Medium { coefficients, .. } => Some(coefficients),
+            Self::Medium { coefficients, .. } | Self::Mixture { coefficients } => Some(coefficients),
         }
     }
 }

@@ -1,9 +1,14 @@
-//! What fills space: scattering coefficients, a phase function, and which medium a path is in.
+//! What fills space: scattering coefficients, a phase function, and which medium and which bodies a path is in.
 
+pub mod bodies;
 pub mod boundary;
+pub mod crossing;
+pub mod enclosure;
 pub mod homogeneous;
 
+pub use bodies::{Body, BodyId, Member, Within};
 pub use boundary::{Inside, MediumInterface};
+pub use crossing::Skin;
 pub use homogeneous::{Coefficients, Homogeneous};
 
 /// Index of a medium of the scene.

@@ -3,7 +3,8 @@
 use super::Path;
 use crate::{
     math::{Vec3, fast},
-    medium::Inside,
+    medium::{Inside, bodies::Part},
+    phase::Phase,
     scene::Scene,
     shape::Interaction,
     spectrum::Lanes,
@@ -21,6 +22,8 @@ pub enum Event {
     Scatter {
         /// Where [length].
         p: Vec3,
+        /// How it scatters there.
+        phase: Phase,
         /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
         emitted: Lanes,
     },
@@ -79,9 +82,19 @@ impl Path {
 
     #[inline]
     fn collide(&mut self, scene: &Scene, flight: f32, tally: &mut Tally) -> Event {
-        let Inside::Medium { id, coefficients, .. } = &self.inside else { return Event::Escape };
+        let (id, phase, coefficients, part) = match &self.inside {
+            Inside::Vacuum => return Event::Escape,
+            Inside::Medium { id, coefficients, phase } => (*id, *phase, coefficients, None),
+            Inside::Mixture { coefficients } => {
+                let u = self.sampler.next_1d();
+                let Some(part) = self.within.choose_part(scene, &self.wavelengths, self.hero, u) else {
+                    return Event::Escape;
+                };
+                (part.id, part.phase, coefficients, Some(part))
+            }
+        };
         let p = self.ray.at(flight);
-        if !scene.may_contain(*id, p) {
+        if !scene.may_contain(id, p) {
             tally.leaks += 1;
             return Event::Absorb { p, emitted: Lanes::ZERO };
         }
@@ -96,6 +109,9 @@ impl Path {
             return Event::Absorb { p, emitted };
         }
         self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
-        Event::Scatter { p, emitted }
+        if let Some(Part { share, probability, .. }) = part {
+            self.weights.choose(share, probability, self.hero);
+        }
+        Event::Scatter { p, phase, emitted }
     }
 }

@@ -11,7 +11,14 @@ pub use history::History;
 pub use vertex::Vertex;
 pub use weights::PathWeights;
 
-use crate::{light::Reference, math::Ray, medium::Inside, sampling::Sampler, scene::Scene, spectrum::Wavelengths};
+use crate::{
+    light::Reference,
+    math::Ray,
+    medium::{Inside, Within},
+    sampling::Sampler,
+    scene::Scene,
+    spectrum::Wavelengths,
+};
 
 /// One path of light, followed from the camera.
 #[derive(Debug, Clone)]
@@ -20,6 +27,10 @@ pub struct Path {
     pub ray: Ray,
     /// The medium that it is in.
     pub inside: Inside,
+    /// The bodies that it is in, where bodies can overlap.
+    pub within: Within,
+    /// Those that it is in once it has passed the surface that it is at.
+    pub beyond: Within,
     /// What it would carry.
     pub weights: PathWeights,
     /// What its lanes mean.
@@ -39,7 +50,9 @@ impl Path {
     pub fn new(scene: &Scene, ray: Ray, wavelengths: Wavelengths, u_hero: f32, sampler: Sampler) -> Self {
         Self {
             ray,
-            inside: Inside::of(scene, scene.camera.medium, &wavelengths),
+            inside: scene.around_camera().inside(scene, &wavelengths),
+            within: *scene.around_camera(),
+            beyond: *scene.around_camera(),
             weights: PathWeights::default(),
             wavelengths,
             hero: ((u_hero * 4.0) as usize).min(3),

@@ -3,7 +3,7 @@
 use crate::{
     light::Target,
     math::{Ray, Vec3, rounding::gamma},
-    medium::Inside,
+    medium::{Inside, Skin, Within},
     scene::Scene,
     shape::offset_point,
     spectrum::{Lanes, Wavelengths},
@@ -12,6 +12,7 @@ use crate::{
 
 /// The transmittance from `origin` to a light, or `None` when a surface stands between.
 ///
+/// `medium` and `within` are those that the ray starts in; `hero` is the lane that says whether two indices are the same.
 /// `origin` must have been moved off the surface it lies on; the light's end is moved off here.
 #[inline]
 pub fn transmittance(
@@ -19,8 +20,8 @@ pub fn transmittance(
     origin: Vec3,
     dir: Vec3,
     target: &Target,
-    mut inside: Inside,
-    wavelengths: &Wavelengths,
+    (mut inside, within): (Inside, &Within),
+    (wavelengths, hero): (&Wavelengths, usize),
     tally: &mut Tally,
 ) -> Option<Lanes> {
     let (mut ray, mut t_max) = segment(origin, dir, target);
@@ -32,6 +33,7 @@ pub fn transmittance(
         return Some(inside.coefficients().map_or(Lanes::ONE, |c| c.transmittance(t_max)));
     }
     let mut transmittance = Lanes::ONE;
+    let mut within = *within;
     loop {
         tally.shadow_rays += 1;
         let hit = scene.geometry.intersect(&ray, t_max);
@@ -43,13 +45,23 @@ pub fn transmittance(
             }
         }
         let Some(hit) = hit else { return Some(transmittance) };
-        let surface = scene.geometry.interaction(&ray, &hit);
-        let open = scene.openness(&surface, ray.dir);
+        let mut surface = scene.geometry.interaction(&ray, &hit);
+        let (skin, beyond) = if scene.has_bodies() {
+            within.meet(scene, &mut surface, ray.dir, wavelengths, hero, tally)
+        } else {
+            (Skin::Written, within)
+        };
+        let open = skin.openness(scene, &surface, ray.dir);
         if open.part <= 0.0 {
             return None;
         }
         transmittance *= open.part;
-        if let Some(interface) = scene.object(&surface).interface.filter(|_| open.crosses) {
+        if scene.has_bodies() {
+            if open.crosses {
+                within = beyond;
+                inside = within.inside(scene, wavelengths);
+            }
+        } else if let Some(interface) = scene.object(&surface).interface.filter(|_| open.crosses) {
             inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
         }
         let next = surface.spawn(ray.dir).origin;
@@ -62,16 +74,30 @@ pub fn transmittance(
 
 /// What of the way from `origin` to a light no surface blocks \[1\], media left out of account: 1 or 0, but for surfaces
 /// that are open in part.
-pub fn visible(scene: &Scene, origin: Vec3, dir: Vec3, target: &Target, tally: &mut Tally) -> f32 {
+pub fn visible(
+    scene: &Scene,
+    origin: Vec3,
+    dir: Vec3,
+    target: &Target,
+    within: &Within,
+    (wavelengths, hero): (&Wavelengths, usize),
+    tally: &mut Tally,
+) -> f32 {
     let (mut ray, mut t_max) = segment(origin, dir, target);
+    let mut within = *within;
     let mut open = 1.0;
     loop {
         tally.shadow_rays += 1;
         let Some(hit) = scene.geometry.intersect(&ray, t_max) else { return open };
-        let surface = scene.geometry.interaction(&ray, &hit);
-        open *= scene.openness(&surface, ray.dir).part;
+        let mut surface = scene.geometry.interaction(&ray, &hit);
+        let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, wavelengths, hero, tally);
+        let here = skin.openness(scene, &surface, ray.dir);
+        open *= here.part;
         if open <= 0.0 {
             return 0.0;
+        }
+        if here.crosses {
+            within = beyond;
         }
         (ray, t_max) = segment(surface.spawn(ray.dir).origin, dir, target);
         if t_max <= 0.0 {

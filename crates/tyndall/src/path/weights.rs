@@ -64,6 +64,14 @@ impl PathWeights {
         self.r_l = None;
     }
 
+    /// Of the media that share the place of a collision, one scatters: a part `share` of the collision, which each lane
+    /// would have taken with `probability`.
+    pub fn choose(&mut self, share: Lanes, probability: Lanes, hero: usize) {
+        let by_hero = 1.0 / probability.lane(hero);
+        self.beta *= share * by_hero;
+        self.r_u *= probability * by_hero;
+    }
+
     /// The weight of what a medium emits at a collision, per length, where [`Self::collide`] has not been called yet. No
     /// light sample finds it.
     #[inline]

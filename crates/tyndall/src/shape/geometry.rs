@@ -62,7 +62,7 @@ impl Shape {
     }
 
     /// The nearest hit before `t_max` on a shape that is not a mesh.
-    fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
         match self {
             Self::Mesh(_) => None,
             Self::Sphere(sphere) => sphere.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
@@ -188,7 +188,7 @@ impl Geometry {
             let local = placement.ray_to_local(ray);
             placement.place(&shape.point(&local, hit.t, hit.prim, hit.uv))
         };
-        point.round(hit.object, hit.prim)
+        point.round(hit.object, hit.prim, hit.instance)
     }
 
     /// A box around everything.

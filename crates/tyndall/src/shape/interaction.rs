@@ -28,6 +28,8 @@ pub struct Interaction {
     pub object: ObjectId,
     /// The part of the object: triangle index, or 0.
     pub prim: u32,
+    /// The placed copy of it, or [`super::Hit::NO_INSTANCE`].
+    pub instance: u32,
 }
 
 impl Interaction {
@@ -111,12 +113,12 @@ pub(super) struct Point {
 
 impl Point {
     /// Rounds to single precision: the only rounding that matters.
-    pub(super) fn round(&self, object: ObjectId, prim: u32) -> Interaction {
+    pub(super) fn round(&self, object: ObjectId, prim: u32, instance: u32) -> Interaction {
         let p = self.p.as_vec3();
         let ng = self.ng.normalize_or_zero().as_vec3();
         let ns = self.ns.try_normalize().map_or(ng, DVec3::as_vec3);
         let ns = if ns.dot(ng) < 0.0 { -ns } else { ns };
         let error = p.abs() * gamma(1) + Vec3::splat((self.error as f32).next_up());
-        Interaction { p, error, ng, ns, uv: self.uv, dpdu: self.dpdu.as_vec3(), object, prim }
+        Interaction { p, error, ng, ns, uv: self.uv, dpdu: self.dpdu.as_vec3(), object, prim, instance }
     }
 }

@@ -10,6 +10,7 @@
 //! leave a surface from outside that bound ([`Interaction::spawn`]). No length is ever compared with a constant, so a
 //! scene can be of any size.
 
+mod between;
 mod builder;
 mod bvh;
 mod census;
@@ -20,6 +21,7 @@ mod instance;
 mod interaction;
 mod mesh;
 mod patch;
+mod seams;
 mod sphere;
 
 pub use builder::{GeometryBuilder, GroupId, ShapeError};
@@ -29,4 +31,5 @@ pub use geometry::{Geometry, Hit, ObjectId, Shape};
 pub use interaction::{Interaction, offset_point};
 pub use mesh::Mesh;
 pub use patch::Patch;
+pub use seams::Seams;
 pub use sphere::Sphere;

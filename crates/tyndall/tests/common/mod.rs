@@ -3,13 +3,13 @@
 
 use tyndall::{
     bsdf::Sides,
-    camera::Camera,
+    camera::{Camera, CameraModel, Perspective, View},
     film::Filter,
     integrator::Integrator,
     light::{AreaLight, ConstantEnvironment, EmitterShape, EnvironmentMap, Light, LightId, LightTable, Projection},
     material::{Index, Material, Roughness},
     math::{Transform, Vec3},
-    medium::{Homogeneous, MediumId, MediumInterface},
+    medium::{BodyId, Homogeneous, MediumId, MediumInterface, Member},
     phase::{Isotropic, Phase},
     render::{Settings, render},
     sampling::SamplerKind,
@@ -76,13 +76,16 @@ impl World {
             eye.as_dvec3().extend(1.0),
         );
         let camera = Camera {
-            to_world: Transform::new(to_world).unwrap(),
-            window: [-1e-4, 1e-4, -1e-4, 1e-4],
+            view: View {
+                to_world: Transform::new(to_world).unwrap(),
+                model: CameraModel::Perspective(Perspective::pinhole([-1e-4, 1e-4, -1e-4, 1e-4])),
+            },
             width: 1,
             height: 1,
             filter: Filter::default(),
             exposure: 1.0,
             medium: None,
+            layers: Vec::new(),
         };
         Self {
             color: ColorMode::Rgb,
@@ -113,6 +116,7 @@ impl World {
             material: MaterialId(self.materials.len() as u32 - 1),
             interface,
             emission: Emission::None,
+            body: None,
         });
     }
 
@@ -197,6 +201,15 @@ impl World {
         let positions = normals.iter().map(|d| *d * radius).collect();
         let mesh = Mesh { positions, indices, normals, uvs: Vec::new(), reversed: false };
         self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
+    }
+
+    /// Makes a body of the last `objects` objects together.
+    pub(crate) fn with_priority(&mut self, priority: i32, objects: usize) {
+        let body = BodyId(self.objects.len() as u32);
+        let first = self.objects.len() - objects;
+        for object in &mut self.objects[first..] {
+            object.body = Some(Member { body, priority });
+        }
     }
 
     /// A wide plane slab between y = −thickness and y = 0.

@@ -6,8 +6,8 @@ use glam::{DMat4, DVec3};
 
 use super::*;
 use crate::desc::{
-    Coefficients, ConductorOptics, EnvironmentMapping, FilterDesc, FovAxis, LightKind, MaterialKind, MicrofacetKind,
-    PhaseDesc, ShadowingKind, ShapeKind, SpectrumDesc, Varying,
+    CameraKind, Coefficients, ConductorOptics, EnvironmentMapping, FilterDesc, FovAxis, LightKind, MaterialKind,
+    MicrofacetKind, PhaseDesc, ShadowingKind, ShapeKind, SpectrumDesc, Varying,
 };
 
 fn transformed(steps: &str) -> DMat4 {
@@ -62,9 +62,10 @@ fn the_camera_sees_right_what_is_right() {
 fn a_focal_length_is_a_field_of_view_along_the_diagonal() {
     for parameters in ["", "<string name=\"focal_length\" value=\"50mm\"/>"] {
         let camera = camera(parameters);
-        let tan = (camera.fov.value.to_radians() / 2.0).tan();
+        let CameraKind::Perspective { fov, frame, .. } = camera.kind else { panic!() };
+        let tan = (fov.value.to_radians() / 2.0).tan();
         assert!((tan - 1872f64.sqrt() / 100.0).abs() < 1e-12);
-        assert_eq!(camera.fov_axis, FovAxis::Diagonal);
+        assert_eq!(frame.axis, FovAxis::Diagonal);
     }
 }
 
@@ -316,4 +317,56 @@ fn a_conductor_may_leave_out_one_part_of_its_index() {
     assert_eq!(optics("<float name=\"eta\" value=\"2\"/>"), (constant(2.0), constant(1.0)));
     let k = "<string name=\"material\" value=\"none\"/><float name=\"k\" value=\"3\"/>";
     assert_eq!(optics(k), (constant(0.0), constant(3.0)));
+}
+
+/// What each sensor needs, and nothing more.
+#[test]
+fn every_sensor_is_read_as_mitsuba_reads_it() {
+    let kind = |sensor: &str| parsed(&format!("<scene version=\"3.0.0\">{sensor}</scene>")).camera;
+    let lens = "<float name=\"aperture_radius\" value=\"0.5\"/><float name=\"focus_distance\" value=\"3\"/>";
+    let thin = kind(&format!("<sensor type=\"thinlens\">{lens}</sensor>"));
+    let CameraKind::Perspective { lens: Some(lens), .. } = thin.kind else { panic!() };
+    assert_eq!((lens.radius, lens.focus), (0.5, 3.0));
+    // The picture of parallel rays is two units wide, whatever its height.
+    let window = kind("<sensor type=\"orthographic\"/>").window(400, 100).unwrap();
+    assert_eq!((window.left, window.right, window.bottom, window.top), (-1.0, 1.0, -0.25, 0.25));
+    let pixel =
+        "<film type=\"hdrfilm\"><integer name=\"width\" value=\"1\"/><integer name=\"height\" value=\"1\"/></film>";
+    let ray = "<point name=\"origin\" value=\"1,2,3\"/><vector name=\"direction\" value=\"0,-2,0\"/>";
+    let meter = kind(&format!("<sensor type=\"radiancemeter\">{pixel}{ray}</sensor>"));
+    assert_eq!(meter.kind, CameraKind::RadianceMeter);
+    assert_eq!(meter.to_world.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(meter.to_world.transform_vector3(DVec3::Z), -DVec3::Y);
+    let on = "<shape type=\"cube\"/><shape type=\"disk\"><sensor type=\"irradiancemeter\"/></shape>";
+    assert_eq!(kind(on).kind, CameraKind::IrradianceMeter { shape: 1 });
+    let batch = "<sensor type=\"batch\"><sensor type=\"perspective\"/><sensor type=\"orthographic\"/></sensor>";
+    let CameraKind::Batch(cameras) = kind(batch).kind else { panic!() };
+    assert_eq!(cameras.len(), 2);
+}
+
+/// Mitsuba's names of channels.
+#[test]
+fn layers_have_the_names_that_mitsuba_gives_them() {
+    let read = |list: &str| {
+        let aov = format!(
+            "<integrator type=\"aov\"><string name=\"aovs\" value=\"{list}\"/><integrator type=\"direct\"/></integrator>"
+        );
+        parse(&PathBuf::from("a.xml"), &scene(&aov), &[]).map(|(desc, _)| desc.integrator).map_err(|e| e.to_string())
+    };
+    let integrator = read("dd.y:depth, nn:sh_normal,i:shape_index").unwrap();
+    let names: Vec<_> = integrator.layers.iter().flat_map(|layer| layer.channels.clone()).collect();
+    assert_eq!(names, ["dd.y.T", "nn.X", "nn.Y", "nn.Z", "i.I"]);
+    assert_eq!((integrator.name.value.as_str(), integrator.max_depth.map(|d| d.value)), ("direct", Some(1)));
+    for (list, message) in [
+        ("dd", "\"dd\" is no layer"),
+        ("a:depth,a:uv", "a layer cannot be called \"a\""),
+        ("stderr:albedo", "a layer cannot be called \"stderr\""),
+        ("a:dept", "did you mean \"depth\"?"),
+        ("a:dp_dv", "are not known yet"),
+    ] {
+        let error = read(list).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+    let depth = parsed(&scene("<integrator type=\"depth\"/>"));
+    assert_eq!(depth.integrator.layers[0].channels, ["depth.T"]);
 }

@@ -171,7 +171,7 @@ fn a_scene_without_a_world_says_so() {
 
 #[test]
 fn all_faults_of_a_file_are_found_at_once() {
-    let text = "Integrator \"bdpt\"\nOption \"string unit\" \"furlong\"\nWorldBegin\nMaterial \"mix\"\nShape \"sphere\" \"float r\" 1 \"bool alpha\" true\nMediumInterface \"fog\" \"\"\n";
+    let text = "Integrator \"function\"\nOption \"string unit\" \"furlong\"\nWorldBegin\nMaterial \"mix\"\nShape \"sphere\" \"float r\" 1 \"bool alpha\" true\nMediumInterface \"fog\" \"\"\n";
     let places: Vec<_> = faults(text).iter().map(|f| f.split(' ').next().unwrap_or("").to_string()).collect();
     assert_eq!(places, ["1:12", "2:1", "4:10", "5:16", "5:28", "6:17"]);
 }

@@ -116,6 +116,6 @@ fn the_camera_of_the_cornell_box_is_not_mirrored() {
     for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
         assert!((camera.to_world.transform_vector3(axis) - axis).length() < 1e-12);
     }
-    let window = camera.window(256, 256);
+    let window = camera.window(256, 256).unwrap();
     assert!((window.right - (39.3f64 / 2.0).to_radians().tan()).abs() < 1e-12);
 }

@@ -6,8 +6,9 @@ use glam::{DMat4, DVec3};
 
 use super::{parse, scene, world};
 use crate::desc::{
-    Coefficients, ConductorOptics, CropDesc, EnvironmentMapping, FilterDesc, FovAxis, LengthUnit, LightKind, Magnitude,
-    MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc, Varying,
+    ApertureDesc, CameraKind, Coefficients, ConductorOptics, CropDesc, EnvironmentMapping, FilterDesc, FovAxis,
+    LengthUnit, LightKind, Magnitude, MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc, SphereMapping,
+    Varying,
 };
 use crate::error::Unsupported;
 use crate::load;
@@ -17,7 +18,8 @@ fn an_empty_world_has_the_defaults_of_pbrt() {
     let desc = world("");
     assert_eq!((desc.film.width, desc.film.height, desc.film.crop, desc.film.exposure), (1280, 720, None, 1.0));
     assert_eq!(desc.film.filter, FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 });
-    assert_eq!((desc.camera.fov.value, desc.camera.fov_axis), (90.0, FovAxis::Smaller));
+    let CameraKind::Perspective { fov, frame, lens: None } = &desc.camera.kind else { panic!() };
+    assert_eq!((fov.value, frame.axis), (90.0, FovAxis::Smaller));
     assert_eq!(desc.camera.to_world, DMat4::IDENTITY);
     assert_eq!(desc.sampler.spp.value, 16);
     assert_eq!((&*desc.integrator.name.value, desc.integrator.max_depth), ("volpath", None));
@@ -309,4 +311,38 @@ fn a_preset_is_reduced_unless_asked_for_in_full_and_a_medium_may_shine() {
     }
     let le = desc.media[2].emission.as_ref().unwrap();
     assert_eq!((&le.spectrum.value, le.scale), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), 4.0));
+}
+
+/// A lens is in millimetres; where the scene does not say its unit, pbrt takes it for a metre.
+#[test]
+fn every_camera_is_read_as_pbrt_reads_it() {
+    let camera = |text: &str| scene(&format!("{text} WorldBegin")).camera;
+    let thin = camera(r#"Camera "perspective" "float lensradius" .25 "float focaldistance" 3"#);
+    let CameraKind::Perspective { lens: Some(lens), .. } = thin.kind else { panic!() };
+    assert_eq!((lens.radius, lens.focus), (0.25, 3.0));
+    let window = camera(r#"Camera "orthographic""#).window(400, 100).unwrap();
+    assert_eq!((window.left, window.top), (-4.0, 1.0));
+    let window = camera(r#"Camera "orthographic" "float screenwindow" [ -2 3 -5 7 ]"#).window(400, 100).unwrap();
+    assert_eq!((window.left, window.right, window.bottom, window.top), (-2.0, 3.0, -5.0, 7.0));
+    let mapping = |text: &str| camera(&format!("Camera \"spherical\" {text}")).kind;
+    assert_eq!(mapping(""), CameraKind::Spherical { mapping: SphereMapping::EqualArea });
+    let equirectangular = CameraKind::Spherical { mapping: SphereMapping::Equirectangular };
+    assert_eq!(mapping(r#""string mapping" "equirectangular""#), equirectangular);
+    let millimetre = |unit: &str| {
+        let text = format!("{unit} Camera \"realistic\" \"string lensfile\" \"l.dat\" \"string aperture\" \"star\"");
+        let CameraKind::Realistic(realistic) = camera(&text).kind else { panic!() };
+        assert_eq!((realistic.aperture_diameter, realistic.focus_distance.value), (1.0, 10.0));
+        assert_eq!(realistic.aperture, ApertureDesc::Star);
+        realistic.millimetre
+    };
+    assert_eq!([millimetre(""), millimetre("Option \"string unit\" \"cm\"")], [1e-3, 0.1]);
+}
+
+#[test]
+fn a_gbuffer_has_the_layers_of_pbrt() {
+    let film = scene(r#"Film "gbuffer" "string coordinatesystem" "world" WorldBegin"#).film;
+    let names: Vec<_> = film.layers.iter().flat_map(|layer| layer.channels.clone()).collect();
+    let wanted = ["Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"];
+    assert_eq!(names[..9], wanted);
+    assert_eq!(names[9..], ["Ns.X", "Ns.Y", "Ns.Z", "u", "v"]);
 }

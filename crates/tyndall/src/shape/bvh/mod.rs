@@ -15,6 +15,7 @@
 //! it is met (`traverse::SLACK`): `4u` for the displacement, `4u` for the rounding of the distances themselves, and
 //! the rest because the plane's distance from the origin is that of the padded box.
 
+pub(super) mod between;
 pub(super) mod build;
 mod prefetch;
 pub(super) mod traverse;

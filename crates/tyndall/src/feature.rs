@@ -1,0 +1,116 @@
+//! What a camera ray meets first: its distance, place, orientation, parameters, name and colour.
+//!
+//! A boundary without a material counts as any other surface; media do not. Where nothing is hit every feature is 0. Each
+//! value has four lanes, the last of which is 1 where something was hit (of the albedo too).
+
+use crate::{
+    camera::CameraRay,
+    math::{Transform, Vec2, Vec3},
+    path::Vertex,
+    sampling::Sampler,
+    scene::Scene,
+    shape::Interaction,
+    spectrum::{Spectrum, Wavelengths, film_rgb},
+};
+
+/// Something to know about the first surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Feature {
+    /// Distance along the ray [length].
+    Depth,
+    /// Place [length].
+    Position(Space),
+    /// Unit normal of the surface.
+    GeometricNormal(Space, Facing),
+    /// Unit normal for shading.
+    ShadingNormal(Space, Facing),
+    /// Surface parameters [1].
+    Uv,
+    /// Derivative of the place by u [length].
+    DpDu,
+    /// Index of the part of an object: a triangle of a mesh.
+    Primitive,
+    /// Index of the object.
+    Object,
+    /// The share of light from all around that goes back along the ray, as linear sRGB under the white of sRGB [1].
+    Albedo,
+}
+
+/// The space that a place or direction is told in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Space {
+    /// That of the scene.
+    World,
+    /// That of the camera.
+    Camera,
+}
+
+/// The side to which a normal points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Facing {
+    /// That of the shape.
+    Outward,
+    /// That of the camera.
+    Viewer,
+}
+
+/// The first hit of a camera ray.
+#[derive(Debug)]
+pub struct FirstHit<'a> {
+    scene: &'a Scene,
+    ray: CameraRay,
+    hit: Option<(f32, Interaction)>,
+}
+
+impl<'a> FirstHit<'a> {
+    /// Follows the ray.
+    pub fn of(scene: &'a Scene, ray: CameraRay) -> Self {
+        let found = scene.first_surface(&ray.ray, f32::INFINITY);
+        let hit = found.map(|hit| (hit.t, scene.geometry.interaction(&ray.ray, &hit)));
+        Self { scene, ray, hit }
+    }
+
+    /// A sample of a feature, with the weight of the camera's.
+    pub fn sample(&self, feature: Feature, wavelengths: &Wavelengths, sampler: &mut Sampler) -> [f32; 4] {
+        let Some((t, hit)) = &self.hit else { return [0.0; 4] };
+        let to_world = &self.scene.camera.view.to_world;
+        let [x, y, z] = match feature {
+            Feature::Depth => [*t, 0.0, 0.0],
+            Feature::Position(Space::World) => hit.p.to_array(),
+            Feature::Position(Space::Camera) => to_world.inverse.transform_point3(hit.p).to_array(),
+            Feature::GeometricNormal(space, facing) => self.normal(hit.ng, space, facing, to_world),
+            Feature::ShadingNormal(space, facing) => self.normal(hit.ns, space, facing, to_world),
+            Feature::Uv => [hit.uv.x, hit.uv.y, 0.0],
+            Feature::DpDu => hit.dpdu.to_array(),
+            Feature::Primitive => [hit.prim as f32, 0.0, 0.0],
+            Feature::Object => [hit.object.0 as f32, 0.0, 0.0],
+            Feature::Albedo => self.albedo(hit, wavelengths, sampler),
+        };
+        [x, y, z, 1.0].map(|v| v * self.ray.weight)
+    }
+
+    fn normal(&self, n: Vec3, space: Space, facing: Facing, to_world: &Transform) -> [f32; 3] {
+        let away = facing == Facing::Viewer && n.dot(self.ray.ray.dir) > 0.0;
+        let n = if away { -n } else { n };
+        match space {
+            Space::World => n,
+            // A normal goes to camera space by the transpose of what takes points to the world.
+            Space::Camera => glam::Mat3::from_mat4(to_world.matrix).transpose().mul_vec3(n).normalize_or_zero(),
+        }
+        .to_array()
+    }
+
+    /// One direction of the BSDF: its weight has the albedo as its mean.
+    fn albedo(&self, hit: &Interaction, wavelengths: &Wavelengths, sampler: &mut Sampler) -> [f32; 3] {
+        let bsdf = match self.scene.material(hit) {
+            crate::material::Material::Null => return [0.0; 3],
+            material => material.bsdf(&hit.into(), wavelengths, 0),
+        };
+        let Vertex::Surface { bsdf, wo, .. } = Vertex::surface(*hit, bsdf, self.ray.ray.dir) else { return [0.0; 3] };
+        let u = sampler.next_2d();
+        match bsdf.sample(wo, sampler.next_1d(), Vec2::new(u.x, u.y)) {
+            Some(sample) => film_rgb(sample.weight * Spectrum::illuminant_rgb([1.0; 3]).eval(wavelengths), wavelengths),
+            None => [0.0; 3],
+        }
+    }
+}
