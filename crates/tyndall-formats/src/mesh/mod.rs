@@ -6,6 +6,7 @@
 mod normals;
 mod obj;
 mod ply;
+mod ply_binary;
 mod serialized;
 
 use std::path::{Path, PathBuf};

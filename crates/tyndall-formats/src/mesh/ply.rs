@@ -13,7 +13,7 @@ use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess,
 use serde_ply::{DeserializeError, ElementDef, PlyFormat, PlyHeader, PlyReader, PropertyType, ScalarType};
 use tyndall::math::{Vec2, Vec3};
 
-use super::{MeshError, TriangleMesh, fan, read_with};
+use super::{MeshError, TriangleMesh, fan, ply_binary::read_elements, read_with};
 
 /// Reads a PLY file.
 ///
@@ -33,6 +33,15 @@ pub fn parse_ply(mut bytes: Vec<u8>) -> Result<TriangleMesh, String> {
     let length = bytes.len();
     let mut reader = PlyReader::from_reader(bytes.as_slice()).map_err(|error| explain(&error))?;
     check_counts(reader.header(), length)?;
+    for ElementDef { name, properties, .. } in &reader.header().elem_defs {
+        let has = |axis: usize| properties.iter().any(|p| Column::of(name, &p.name) == Column::Number(axis));
+        if name == "vertex" && !(0..3).all(has) {
+            return Err("element `vertex` lacks one of the properties x, y and z".into());
+        }
+    }
+    if reader.header().format != PlyFormat::Ascii {
+        return read_elements(reader.header(), body(&bytes))?.checked();
+    }
 
     let mut mesh = TriangleMesh::default();
     let (mut normals, mut uvs) = (Vec::new(), Vec::new());
@@ -40,9 +49,6 @@ pub fn parse_ply(mut bytes: Vec<u8>) -> Result<TriangleMesh, String> {
     while let Some(ElementDef { name, properties, .. }) = file.current_element().cloned() {
         let columns: Vec<_> = properties.iter().map(|property| Column::of(&name, &property.name)).collect();
         let has = |numbers: Range<usize>| numbers.into_iter().all(|i| columns.contains(&Column::Number(i)));
-        if name == "vertex" && !has(0..3) {
-            return Err("element `vertex` lacks one of the properties x, y and z".into());
-        }
         let (has_normals, has_uvs) = (has(3..6), has(6..8));
         let mut each = |row: &Row| {
             let [x, y, z, nx, ny, nz, u, v] = row.numbers;
@@ -63,6 +69,19 @@ pub fn parse_ply(mut bytes: Vec<u8>) -> Result<TriangleMesh, String> {
     mesh.normals = (!normals.is_empty()).then_some(normals);
     mesh.uvs = (!uvs.is_empty()).then_some(uvs);
     mesh.checked()
+}
+
+/// What follows the header.
+fn body(bytes: &[u8]) -> &[u8] {
+    let mut rest = bytes;
+    while let Some(end) = rest.iter().position(|&byte| byte == b'\n') {
+        let line = rest[..end].trim_ascii();
+        rest = &rest[end + 1..];
+        if line == b"end_header" {
+            return rest;
+        }
+    }
+    &[]
 }
 
 /// Writes a mesh as binary little-endian PLY.
@@ -131,7 +150,7 @@ fn explain(error: &DeserializeError) -> String {
 
 /// What a property of the file is to the mesh.
 #[derive(Clone, Copy, PartialEq)]
-enum Column {
+pub(super) enum Column {
     /// 0–2 position, 3–5 normal, 6–7 texture coordinates.
     Number(usize),
     /// The list of the corners of a face.
@@ -140,7 +159,7 @@ enum Column {
 }
 
 impl Column {
-    fn of(element: &str, property: &str) -> Self {
+    pub(super) fn of(element: &str, property: &str) -> Self {
         match (element, property) {
             ("vertex", "x") => Self::Number(0),
             ("vertex", "y") => Self::Number(1),

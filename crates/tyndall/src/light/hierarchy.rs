@@ -7,6 +7,9 @@
 //!
 //! Lights that are infinitely far away stand beside the tree: what they do is the same everywhere.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f32x8};
+
 use super::{Light, LightId, Reference, bounds::LightBounds};
 use crate::{
     math::Vec3,
@@ -78,6 +81,7 @@ pub(super) struct Hierarchy {
     infinite: Option<Infinite>,
     /// By light.
     homes: Vec<Home>,
+    level: Level,
 }
 
 impl Hierarchy {
@@ -102,7 +106,7 @@ impl Hierarchy {
         for (bounds, _) in &mut leaves {
             bounds.intensity = bounds.intensity.max(least);
         }
-        let mut tree = Self { nodes: Vec::new(), infinite: Infinite::of(infinite, lights), homes };
+        let mut tree = Self { nodes: Vec::new(), infinite: Infinite::of(infinite, lights), homes, level: Level::new() };
         tree.build(&mut leaves);
         tree
     }
@@ -110,7 +114,7 @@ impl Hierarchy {
     /// A light to sample from `from`, with its probability.
     pub(super) fn choose(&self, from: &Reference, u: f32) -> Option<(LightId, f32)> {
         let mut u = with_more_bits(u, from.p);
-        let mut weights = self.nodes.first().map_or([0.0; WIDTH], |root| root.weights(from));
+        let mut weights = self.root_weights(from);
         let near = self.share_of_tree(&weights);
         if u >= near {
             let infinite = self.infinite.as_ref()?;
@@ -126,7 +130,7 @@ impl Hierarchy {
                 Child::Light(id) => return Some((id, probability as f32)),
                 Child::Node(next) => node = &self.nodes[next as usize],
             }
-            weights = node.weights(from);
+            weights = self.weights(node, from);
         }
     }
 
@@ -135,7 +139,7 @@ impl Hierarchy {
         let mut place = match self.homes[id.0 as usize] {
             Home::Tree(place) => place,
             Home::Infinity(index) => {
-                let weights = self.nodes.first().map_or([0.0; WIDTH], |root| root.weights(from));
+                let weights = self.root_weights(from);
                 let share = self.infinite.as_ref().map_or(0.0, |infinite| infinite.shares.pmf(index as usize));
                 return (1.0 - self.share_of_tree(&weights)) as f32 * share;
             }
@@ -143,7 +147,7 @@ impl Hierarchy {
         let mut probability = 1.0;
         loop {
             let node = &self.nodes[place.node as usize];
-            let weights = node.weights(from);
+            let weights = self.weights(node, from);
             let total = sum(&weights);
             if total <= 0.0 {
                 return 0.0;
@@ -154,6 +158,15 @@ impl Hierarchy {
                 None => return (probability * self.share_of_tree(&weights)) as f32,
             }
         }
+    }
+
+    #[inline]
+    fn weights(&self, node: &Node, from: &Reference) -> [f32; WIDTH] {
+        dispatch!(self.level, simd => node.weigh(simd, from))
+    }
+
+    fn root_weights(&self, from: &Reference) -> [f32; WIDTH] {
+        self.nodes.first().map_or([0.0; WIDTH], |root| self.weights(root, from))
     }
 
     /// How often a light of the tree is taken, from the weights at the root.
@@ -236,47 +249,52 @@ impl Node {
         self.two_sided[slot] = f32::from(u8::from(group.two_sided));
     }
 
-    /// Bounds on what the children do at a point: see the head of this file.
-    #[inline]
-    fn weights(&self, from: &Reference) -> [f32; WIDTH] {
-        let normal = from.normal.unwrap_or(Vec3::ZERO);
-        let is_volume = from.normal.is_none();
-        std::array::from_fn(|i| {
-            let x = self.centre[0][i] - from.p.x;
-            let y = self.centre[1][i] - from.p.y;
-            let z = self.centre[2][i] - from.p.z;
-            let r2 = self.radius[i] * self.radius[i];
-            let d2 = x * x + y * y + z * z;
-            let inside = d2 <= r2;
-            let by_d = 1.0 / d2.max(f32::MIN_POSITIVE).sqrt();
-            let sin_b = (self.radius[i] * by_d).min(1.0);
-            let cos_b = (1.0 - sin_b * sin_b).sqrt();
-            let along = -(self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z) * by_d;
-            let cos_w = if self.two_sided[i] > 0.0 { along.abs() } else { along }.clamp(-1.0, 1.0);
-            let sin_w = (1.0 - cos_w * cos_w).sqrt();
-            let (cos_x, sin_x) = less((cos_w, sin_w), (self.cos_o[i], self.sin_o[i]));
-            let (cos_out, _) = less((cos_x, sin_x), (cos_b, sin_b));
-            let cos_n = ((normal.x * x + normal.y * y + normal.z * z) * by_d).clamp(-1.0, 1.0);
-            let (cos_in, _) = less((cos_n, (1.0 - cos_n * cos_n).sqrt()), (cos_b, sin_b));
-            let leaves = if inside { 1.0 } else { cos_out };
-            let arrives = if inside | is_volume { 1.0 } else { cos_in };
-            let dark = (leaves < self.cos_e[i] - SLACK) | (arrives < -SLACK);
-            let cosines = leaves.max(LEAST_COSINE) * arrives.max(LEAST_COSINE);
-            let weight = self.intensity[i] * cosines / d2.max(r2).max(f32::MIN_POSITIVE);
-            // Never infinite at a light, and never nothing where a light is merely far.
-            let weight = if self.intensity[i] > 0.0 { weight.clamp(f32::MIN_POSITIVE, 1e30) } else { 0.0 };
-            if dark { 0.0 } else { weight }
-        })
+    /// Bounds on what the children do at a point: see the head of this file. Only operations that are rounded alike on
+    /// every machine.
+    #[inline(always)]
+    fn weigh<S: Simd>(&self, simd: S, from: &Reference) -> [f32; WIDTH] {
+        let lanes = |values: &[f32; WIDTH]| f32x8::simd_from(simd, *values);
+        let all = |value: f32| f32x8::splat(simd, value);
+        let (zero, one, least) = (all(0.0), all(1.0), all(f32::MIN_POSITIVE));
+        let unit = |cos: f32x8<S>| cos.max(all(-1.0)).min(one);
+        let sine = |cos: f32x8<S>| (one - cos * cos).max(zero).sqrt();
+        let x = lanes(&self.centre[0]) - all(from.p.x);
+        let y = lanes(&self.centre[1]) - all(from.p.y);
+        let z = lanes(&self.centre[2]) - all(from.p.z);
+        let (radius, d2) = (lanes(&self.radius), x * x + y * y + z * z);
+        let r2 = radius * radius;
+        let inside = d2.simd_le(r2);
+        let by_d = one / d2.max(least).sqrt();
+        let sin_b = (radius * by_d).min(one);
+        let b = (sine(sin_b), sin_b);
+        let [ax, ay, az] = &self.axis;
+        let along = zero - (lanes(ax) * x + lanes(ay) * y + lanes(az) * z) * by_d;
+        let cos_w = unit(lanes(&self.two_sided).simd_gt(zero).select(along.max(zero - along), along));
+        let out = less(simd, (cos_w, sine(cos_w)), (lanes(&self.cos_o), lanes(&self.sin_o)));
+        let leaves = inside.select(one, less(simd, out, b).0);
+        let arrives = from.normal.map_or(one, |n| {
+            let cos_n = unit((all(n.x) * x + all(n.y) * y + all(n.z) * z) * by_d);
+            inside.select(one, less(simd, (cos_n, sine(cos_n)), b).0)
+        });
+        let intensity = lanes(&self.intensity);
+        let cosines = leaves.max(all(LEAST_COSINE)) * arrives.max(all(LEAST_COSINE));
+        // Never infinite at a light, and never nothing where a light is merely far.
+        let weight = (intensity * cosines / d2.max(r2).max(least)).max(least).min(all(1e30));
+        let shines = leaves.simd_ge(lanes(&self.cos_e) - all(SLACK)) & arrives.simd_ge(all(-SLACK));
+        (shines & intensity.simd_gt(zero)).select(weight, zero).into()
     }
 }
 
-/// Cosine and sine of `max(a − b, 0)`, of angles in [0, π].
+/// Cosine and sine of `max(a − b, 0)`, of angles in [0, π] given by theirs.
 #[inline(always)]
-fn less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
-    let within = cos_a > cos_b;
-    let (cos, sin) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
-    if within { (1.0, 0.0) } else { (cos, sin) }
+fn less<S: Simd>(simd: S, a: Angle<S>, b: Angle<S>) -> Angle<S> {
+    let within = a.0.simd_gt(b.0);
+    let (cos, sin) = (a.0 * b.0 + a.1 * b.1, a.1 * b.0 - a.0 * b.1);
+    (within.select(f32x8::splat(simd, 1.0), cos), within.select(f32x8::splat(simd, 0.0), sin))
 }
+
+/// Cosine and sine.
+type Angle<S> = (f32x8<S>, f32x8<S>);
 
 fn sum(weights: &[f32; WIDTH]) -> f64 {
     weights.iter().map(|w| f64::from(*w)).sum()
@@ -290,14 +308,15 @@ fn pick(weights: &[f32; WIDTH], u: &mut f64) -> Option<(usize, f64)> {
     let mut found = None;
     for (slot, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
         let weight = f64::from(*weight);
-        found = Some((slot, weight / total));
-        *u = (rest / weight).clamp(0.0, 1.0 - f64::EPSILON);
+        found = Some((slot, weight, rest));
         if rest < weight {
             break;
         }
         rest -= weight;
     }
-    found
+    let (slot, weight, rest) = found?;
+    *u = (rest / weight).clamp(0.0, 1.0 - f64::EPSILON);
+    Some((slot, weight / total))
 }
 
 /// The 24 bits of `u` would run out in a tree of millions: the place decides the next 29, which are as good as random
