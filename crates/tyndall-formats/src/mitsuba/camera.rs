@@ -40,6 +40,7 @@ pub(super) fn sensor<'t>(
     let to_world = object.transform(report);
     check_rigid(to_world, element, report);
     object.ignore(&["near_clip", "far_clip"], "nothing is too near or too far to be seen", report);
+    object.ignore(&["focus_distance"], "through a pinhole everything is in focus", report);
     object.ignore(&["shutter_open", "shutter_close"], "nothing moves", report);
     object.not_yet(&["principal_point_offset_x", "principal_point_offset_y", "srf"], report);
     object.finish(report);
