@@ -4,7 +4,8 @@
     python mitsuba_render.py scenes/peers/mitsuba/g_cornell.xml --variant llvm_ad_rgb -D integrator=path \
         --spp 64 --runs 4 --seed 1 --out target/peers/g_cornell/mitsuba
 
-Run k (from 0) uses the seed `seed + k` and lands in `OUT_k.npy` (float32, height × width × 3, linear sRGB).
+Run k (from 0) uses the seed `seed + k` and lands in `OUT_k.npy` (float32, height × width × 3, linear sRGB). Of films with
+more channels the first three are taken, of grey ones the first three times.
 The JSON line on standard output gives the CPU and wall seconds of each run. They leave out Python's start, the
 scene's loading and the compilation of kernels: a first image of the same size, thrown away, pays for those.
 """
@@ -25,6 +26,7 @@ def main() -> None:
     parser.add_argument("--spp", type=int, required=True)
     parser.add_argument("--runs", type=int, required=True)
     parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--resolution", metavar="WxH", help="instead of the scene's; of the same ratio of sides")
     parser.add_argument("--out", type=Path, required=True)
     args = parser.parse_args()
 
@@ -35,10 +37,14 @@ def main() -> None:
 
     mi.set_variant(args.variant)
     scene = mi.load_file(str(args.scene), **dict(pair.split("=", 1) for pair in args.parameters))
+    if args.resolution:
+        resize(mi, scene, [int(side) for side in args.resolution.split("x")])
     is_compiled = args.variant.startswith("llvm")
 
     def render(seed: int, spp: int) -> np.ndarray:
         image = np.array(mi.render(scene, seed=seed, spp=spp), dtype=np.float32)
+        image = image.reshape(image.shape[0], image.shape[1], -1)
+        image = np.ascontiguousarray(image[:, :, :3]) if image.shape[2] >= 3 else np.repeat(image[:, :, :1], 3, axis=2)
         if is_compiled:
             dr.sync_thread()
         return image
@@ -65,11 +71,21 @@ def main() -> None:
                 "spp": args.spp,
                 "runs": args.runs,
                 "seed": args.seed,
+                "resolution": args.resolution,
                 "cpu_seconds": cpu_seconds,
                 "wall_seconds": wall_seconds,
             }
         )
     )
+
+
+def resize(mi, scene, size: list[int]) -> None:
+    """Another size of the first sensor's film, whole: a crop window goes."""
+    parameters = mi.traverse(scene.sensors()[0])
+    parameters["film.size"] = size
+    parameters["film.crop_size"] = size
+    parameters["film.crop_offset"] = [0, 0]
+    parameters.update()
 
 
 def cpu_clock() -> float:

@@ -1,10 +1,11 @@
-//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `bench`, `full`.
+//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `collections`, `bench`, `full`.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
 mod bench;
 #[cfg(feature = "rays")]
 mod bench_rays;
 mod ci;
+mod collections;
 mod docs;
 #[cfg(feature = "rays")]
 mod embree;
@@ -33,6 +34,8 @@ enum Chore {
     Tidy,
     /// tyndall against Mitsuba 3, and RGB against spectral colour: agreement and efficiency
     Peers(peers::Options),
+    /// Other people's scenes: what loads, what renders, what agrees with Mitsuba 3 or with published images
+    Collections(collections::Options),
     /// The figures that tyndall promises, measured on this machine
     Bench(bench::Options),
     /// All that is known to be worth checking: ci, the slow tests, peers, bench
@@ -54,6 +57,7 @@ fn run(chore: Chore) -> anyhow::Result<()> {
         Chore::Ci => ci::run(),
         Chore::Tidy => tidy::run(),
         Chore::Peers(options) => peers::run(&options),
+        Chore::Collections(options) => collections::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Full => {
             ci::run()?;

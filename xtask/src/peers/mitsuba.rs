@@ -13,7 +13,7 @@ use crate::shell::{output, root};
 use crate::venv::python_with;
 
 /// The version that the figures of this repository were measured against.
-const PACKAGES: [&str; 2] = ["mitsuba==3.9.1", "numpy"];
+pub(crate) const PACKAGES: [&str; 2] = ["mitsuba==3.9.1", "numpy"];
 
 /// Mitsuba, installed.
 #[derive(Debug)]

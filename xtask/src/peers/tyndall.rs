@@ -12,7 +12,8 @@ use crate::shell::{cargo, output, root, tee};
 /// The binary `tyndall`.
 #[derive(Debug)]
 pub(crate) struct Tyndall {
-    binary: PathBuf,
+    /// The file
+    pub(crate) binary: PathBuf,
 }
 
 impl Tyndall {

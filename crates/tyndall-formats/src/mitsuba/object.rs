@@ -3,7 +3,7 @@
 //! Each question marks its answer as used; [`Object::finish`] reports what nobody asked for, with the nearest word that
 //! somebody did. So the reader of a plugin is also the list of its words.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
@@ -264,6 +264,13 @@ impl<'t> Object<'t> {
             report.errors.push(error.related(first.at.span, "first here"));
         }
         all.first().copied()
+    }
+
+    /// Objects that stand here only for others to refer to.
+    pub(super) fn leave_to_references(&mut self, referred: &HashSet<Span>) {
+        for child in self.children.iter_mut().filter(|child| referred.contains(&child.element.span)) {
+            child.used = true;
+        }
     }
 
     /// Parameters that are known and change nothing here.

@@ -1,6 +1,6 @@
 //! From the tree to the scene: finds the parts, follows references, builds each part once.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::object::{Files, Ids, Object, Report};
 use super::tree::{Element, Tree};
@@ -65,7 +65,8 @@ pub(super) fn build(tree: &Tree, sources: &SourceMap, errors: ErrorList) -> (Opt
         lights: Vec::new(),
         meters: Vec::new(),
     };
-    let scene = builder.scene(&tree.root);
+    let referred = referred(tree, &builder.ids);
+    let scene = builder.scene(&tree.root, &referred);
     (scene, builder.report.errors)
 }
 
@@ -90,6 +91,19 @@ fn ids<'t>(tree: &'t Tree, errors: &mut ErrorList) -> Ids<'t> {
     ids
 }
 
+/// The objects that some `<ref>` names.
+fn referred(tree: &Tree, ids: &Ids) -> HashSet<Span> {
+    let mut spans = HashSet::new();
+    let mut rest = vec![&tree.root];
+    while let Some(element) = rest.pop() {
+        rest.extend(&element.children);
+        if element.tag == "ref" {
+            spans.extend(ids.get(element.text("id")).map(|element| element.span));
+        }
+    }
+    spans
+}
+
 impl<'t> Builder<'t> {
     pub(super) fn object(&mut self, element: &'t Element) -> Object<'t> {
         Object::new(element, &self.ids, self.files, &mut self.report)
@@ -100,7 +114,7 @@ impl<'t> Builder<'t> {
         self.files.resolve(name)
     }
 
-    fn scene(&mut self, root: &'t Element) -> Option<SceneDesc> {
+    fn scene(&mut self, root: &'t Element, referred: &HashSet<Span>) -> Option<SceneDesc> {
         let mut scene = self.object(root);
         for bsdf in scene.nested("bsdf") {
             self.material(bsdf.element, false);
@@ -118,6 +132,10 @@ impl<'t> Builder<'t> {
             self.shape_or_instance(shape.element);
         }
         for emitter in scene.nested("emitter") {
+            let is_of_a_shape = emitter.element.text("type") == "area" && referred.contains(&emitter.element.span);
+            if is_of_a_shape {
+                continue;
+            }
             if let Some(light) = self.light(emitter.element) {
                 self.lights.push(light);
             }
@@ -129,6 +147,7 @@ impl<'t> Builder<'t> {
         let integrator = integrator.unwrap_or_else(|| default_integrator(root.span));
         let sensor = self.sensor(&mut scene);
         let seen = sensor.and_then(|(element, shape)| camera::sensor(self, element, shape));
+        scene.leave_to_references(referred);
         scene.finish(&mut self.report);
 
         let (camera, film, sampler) = seen?;

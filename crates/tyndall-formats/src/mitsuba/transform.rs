@@ -1,6 +1,6 @@
 //! `<transform>`: each step is applied after the ones before it, that is, multiplied from the left.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::number::{number, numbers, vector};
 use super::tree::Element;
@@ -39,16 +39,13 @@ fn step_matrix(step: &Element) -> Result<DMat4, SceneError> {
     Ok(matrix)
 }
 
+/// `cos θ I + sin θ [a]× + (1 − cos θ) a aᵀ`, with the axis `a` as it is written: Mitsuba does not normalise it, so a longer
+/// axis makes a matrix that is no rotation, and scenes are written by what it makes.
 fn rotation(step: &Element) -> Result<DMat4, SceneError> {
-    let angle = number(step.text("angle"), step.span_of("angle"))?;
-    let axis = vector(step, 0.0)?;
-    // Mitsuba puts the axis into the formula as it is: the matrix of a longer one is no rotation.
-    if (axis.length() - 1.0).abs() > 1e-3 {
-        let length = (axis.length() * 1e4).round() / 1e4;
-        let message = format!("the axis of the rotation is {length} long, and Mitsuba takes it as it is");
-        return Err(SceneError::at(step.span, message).help("its length must be 1"));
-    }
-    Ok(DMat4::from_axis_angle(axis.normalize(), angle.to_radians()))
+    let (sin, cos) = number(step.text("angle"), step.span_of("angle"))?.to_radians().sin_cos();
+    let a = vector(step, 0.0)?;
+    let column = |unit: DVec3| cos * unit + sin * a.cross(unit) + (1.0 - cos) * a.dot(unit) * a;
+    Ok(DMat4::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))))
 }
 
 /// +z to the target, +y near `up`, and so +x to the left of one who looks along +z.
@@ -75,7 +72,7 @@ fn look_at(step: &Element) -> Result<DMat4, SceneError> {
 fn written(step: &Element) -> Result<DMat4, SceneError> {
     let (text, span) = (step.text("value"), step.span_of("value"));
     if let Ok(m) = numbers::<9>(text, span) {
-        let m = glam::DMat3::from_cols_array(&m).transpose();
+        let m = DMat3::from_cols_array(&m).transpose();
         return Ok(DMat4::from_mat3(m));
     }
     let m = DMat4::from_cols_array(

@@ -34,7 +34,7 @@ enum Shell {
 
 /// What the camera is in. What the scene says about its medium holds.
 pub(crate) fn around_camera(scene: &Scene) -> Within {
-    let mut within = within(scene, scene.camera.to_world.point(Vec3::ZERO));
+    let mut within = within(scene, scene.camera.view.to_world.point(Vec3::ZERO));
     if let Some(medium) = scene.camera.medium {
         within.say(medium);
     }

@@ -27,7 +27,9 @@ fn transforms_do_to_points_what_mitsuba_says() {
         // A quarter turn around z takes x to y.
         ("<rotate z=\"1\" angle=\"90\"/>", [-2.0, 1.0, 3.0]),
         // A third of a turn around the diagonal takes x to y to z.
-        ("<rotate value=\"0.57735027\" angle=\"120\"/>", [3.0, 1.0, 2.0]),
+        ("<rotate value=\"0.5773502691896258\" angle=\"120\"/>", [3.0, 1.0, 2.0]),
+        // An axis twice as long, by the formula: x → −2z, z → 2x, y → 4y.
+        ("<rotate y=\"2\" angle=\"90\"/>", [6.0, 8.0, -2.0]),
         ("<scale value=\"2\"/><translate x=\"1\"/>", [3.0, 4.0, 6.0]),
         ("<translate x=\"1\"/><scale value=\"2\"/>", [4.0, 4.0, 6.0]),
         ("<matrix value=\"0 1 0 5  1 0 0 6  0 0 1 7  0 0 0 1\"/>", [7.0, 7.0, 10.0]),
@@ -369,4 +371,18 @@ fn layers_have_the_names_that_mitsuba_gives_them() {
     }
     let depth = parsed(&scene("<integrator type=\"depth\"/>"));
     assert_eq!(depth.integrator.layers[0].channels, ["depth.T"]);
+}
+
+/// What stands at the top of a scene and is referred to belongs to where the reference stands.
+#[test]
+fn a_lamp_and_a_sampler_may_stand_where_they_are_only_referred_to() {
+    let scene = parsed(
+        r#"<scene version="3.0.0">
+        <emitter type="area" id="lamp"><rgb name="radiance" value="3"/></emitter>
+        <sampler type="independent" id="sampler"><integer name="sample_count" value="7"/></sampler>
+        <shape type="sphere"><ref id="lamp"/></shape>
+        <sensor type="perspective"><float name="focus_distance" value="2"/><ref id="sampler"/></sensor></scene>"#,
+    );
+    assert!(scene.shapes[0].emission.is_some() && scene.lights.is_empty());
+    assert_eq!(scene.sampler.spp.value, 7);
 }
