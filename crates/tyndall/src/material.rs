@@ -2,7 +2,7 @@
 
 use crate::{
     bsdf::{
-        Bsdf, Sides,
+        Bsdf, Plastic, Sides,
         microfacet::{Distribution, Shadowing},
     },
     scene::MaterialId,
@@ -59,6 +59,21 @@ pub enum Material {
         transmittance: Texture,
         /// A factor on both [1], after which each is held in 0 to 1.
         scale: f32,
+    },
+    /// A diffuse base under a smooth coat.
+    Plastic {
+        /// Index of the coat over that of the outside [1].
+        eta: f32,
+        /// Its [`internal_reflectance`](crate::bsdf::internal_reflectance) [1].
+        internal: f32,
+        /// Reflectance of the base [1].
+        reflectance: Texture,
+        /// Whether light between base and coat deepens the colour, or keeps its hue.
+        nonlinear: bool,
+        /// A factor on what the coat reflects [1].
+        tint: Texture,
+        /// The sides that reflect.
+        sides: Sides,
     },
     /// No material: light passes, and may enter another medium.
     Null,
@@ -175,6 +190,11 @@ impl Material {
             Self::DiffuseTransmission { reflectance, transmittance, scale } => {
                 let scaled = |s: &Texture| s.eval(at, wavelengths).map(|v| (v * scale).clamp(0.0, 1.0));
                 Bsdf::diffuse_transmission(scaled(reflectance), scaled(transmittance))
+            }
+            Self::Plastic { eta, internal, reflectance, nonlinear, tint, sides } => {
+                Bsdf::Plastic(Plastic::new(*eta, *internal, reflectance.eval(at, wavelengths), *nonlinear))
+                    .tinted(tint.eval(at, wavelengths), Lanes::ONE)
+                    .on(*sides)
             }
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
             Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } => Bsdf::Null,

@@ -56,6 +56,7 @@ pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
         | MaterialKind::Dielectric { .. }
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::DiffuseTransmission { .. }
+        | MaterialKind::Plastic { .. }
         | MaterialKind::Interface => &[],
     }
 }

@@ -2,7 +2,7 @@
 
 use tyndall::{
     bsdf::{
-        Sides,
+        Sides, internal_reflectance,
         microfacet::{Distribution, Shadowing},
     },
     material::{Index, Material, Metal, Roughness},
@@ -79,6 +79,19 @@ impl Builder<'_> {
                     reflectance: self.texture(reflectance, Measure::Share)?,
                     transmittance: self.texture(transmittance, Measure::Share)?,
                     scale: *scale as f32,
+                })
+            }
+            MaterialKind::Plastic { eta, reflectance, nonlinear, tint } => {
+                let Index::Constant(coat) = self.index(eta)? else {
+                    return self.fail(SceneError::at(eta.span, "the index of this coat is one number"));
+                };
+                Some(Material::Plastic {
+                    eta: coat,
+                    internal: internal_reflectance(coat),
+                    reflectance: self.texture(reflectance, Measure::Share)?,
+                    nonlinear: *nonlinear,
+                    tint: self.tint(tint.as_ref())?,
+                    sides,
                 })
             }
             MaterialKind::Interface => Some(Material::Null),

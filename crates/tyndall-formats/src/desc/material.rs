@@ -62,6 +62,17 @@ pub enum MaterialKind {
         /// Factor on both, at least 0; each is held in [0, 1] after it.
         scale: f64,
     },
+    /// A diffuse base under a smooth coat (Mitsuba).
+    Plastic {
+        /// Refractive index of the coat relative to the outside.
+        eta: Spanned<SpectrumDesc>,
+        /// Reflectance of the base, in [0, 1].
+        reflectance: Spanned<Varying>,
+        /// Whether light between base and coat deepens the colour.
+        nonlinear: bool,
+        /// Factor on what the coat reflects, if not 1.
+        tint: Option<Spanned<Varying>>,
+    },
     /// No surface at all: a boundary of media that light passes unchanged.
     Interface,
     /// Two materials mixed.

@@ -1,4 +1,4 @@
-//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `null`; `blendbsdf`, `mask`, and
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `plastic`, `null`; `blendbsdf`, `mask`, and
 //! `twosided` around one that reflects or two.
 
 use tyndall_optics::spectra;
@@ -121,19 +121,25 @@ impl<'t> Builder<'t> {
                 MaterialKind::Diffuse { reflectance: self.varying_or(&mut object, "reflectance", Measure::Part, 0.5) }
             }
             "dielectric" | "roughdielectric" => MaterialKind::Dielectric {
-                eta: relative_index(&mut object, &mut self.report),
+                eta: relative_index(&mut object, "bk7", &mut self.report),
                 roughness: self.roughness(plugin == "roughdielectric", &mut object),
                 reflection_tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
                 transmission_tint: self.varying(&mut object, "specular_transmittance", Measure::Part),
             },
             "thindielectric" => MaterialKind::ThinDielectric {
-                eta: relative_index(&mut object, &mut self.report),
+                eta: relative_index(&mut object, "bk7", &mut self.report),
                 reflection_tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
                 transmission_tint: self.varying(&mut object, "specular_transmittance", Measure::Part),
             },
             "conductor" | "roughconductor" => MaterialKind::Conductor {
                 optics: self.conductor(&mut object)?,
                 roughness: self.roughness(plugin == "roughconductor", &mut object),
+                tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
+            },
+            "plastic" => MaterialKind::Plastic {
+                eta: relative_index(&mut object, "polypropylene", &mut self.report),
+                reflectance: self.varying_or(&mut object, "diffuse_reflectance", Measure::Part, 0.5),
+                nonlinear: object.flag("nonlinear", false, &mut self.report),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
             "blendbsdf" => {
@@ -210,8 +216,8 @@ impl<'t> Builder<'t> {
 }
 
 /// `int_ior` over `ext_ior`.
-fn relative_index(object: &mut Object, report: &mut Report) -> Spanned<SpectrumDesc> {
-    let inside = index(object, "int_ior", "bk7", report);
+fn relative_index(object: &mut Object, default: &str, report: &mut Report) -> Spanned<SpectrumDesc> {
+    let inside = index(object, "int_ior", default, report);
     let outside = index(object, "ext_ior", "air", report);
     Spanned::new(SpectrumDesc::Constant(inside.value / outside.value), inside.span)
 }

@@ -6,7 +6,7 @@
 //!   normal on the outside of the shape. `wo.z > 0` is outside.
 //! - A path comes from the camera: `wo` looks back along it, `wi` is where it goes on and where light comes from.
 //! - `eval` is `f(wo, wi)·|cos θi|` [1/sr]: it includes the cosine. Perfectly sharp (Dirac) lobes evaluate to zero and
-//!   can only be sampled.
+//!   can only be sampled; a model may have others beside them.
 //! - `pdf` is per steradian of `wi`, over the whole sphere.
 //! - What is carried is radiance: light that passes into an index higher by `η` is squeezed into a smaller cone, so
 //!   transmission carries `1/η²`, with `η` the index on the side of `wi` over that on the side of `wo`. Hence
@@ -21,6 +21,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod plastic;
 mod rough_conductor;
 mod rough_dielectric;
 mod thin_dielectric;
@@ -29,6 +30,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
+pub use plastic::{Plastic, internal_reflectance};
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use thin_dielectric::ThinDielectric;
@@ -114,6 +116,8 @@ pub enum Bsdf {
     ThinDielectric(ThinDielectric),
     /// A leaf, a lampshade.
     DiffuseTransmission(DiffuseTransmission),
+    /// A diffuse base under a smooth coat.
+    Plastic(Plastic),
     /// No surface at all: a mere boundary of media.
     Null,
 }
@@ -173,6 +177,7 @@ impl Bsdf {
         match &mut self {
             Self::Diffuse(model) => model.reflectance *= reflectance,
             Self::Conductor(model) => model.reflectance *= reflectance,
+            Self::Plastic(model) => model.reflectance *= reflectance,
             Self::RoughConductor(model) => model.metal.reflectance *= reflectance,
             Self::Dielectric(model) => model.tint(reflectance, transmittance),
             Self::RoughDielectric(model) => model.interface.tint(reflectance, transmittance),
@@ -200,6 +205,7 @@ impl Bsdf {
             | Self::Dielectric(_)
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
+            | Self::Plastic(_)
             | Self::Null => return self,
         };
         (microfacets.distribution, microfacets.shadowing) = (distribution, shadowing);
@@ -213,6 +219,7 @@ impl Bsdf {
             Self::Diffuse(model) => model.sides = sides,
             Self::Conductor(model) => model.sides = sides,
             Self::RoughConductor(model) => model.metal.sides = sides,
+            Self::Plastic(model) => model.sides = sides,
             Self::Dielectric(_)
             | Self::RoughDielectric(_)
             | Self::ThinDielectric(_)
@@ -230,6 +237,7 @@ impl Bsdf {
             Self::RoughConductor(model) => model.eval(wo, wi),
             Self::RoughDielectric(model) => model.eval(wo, wi),
             Self::DiffuseTransmission(model) => model.eval(wo, wi),
+            Self::Plastic(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
@@ -242,6 +250,7 @@ impl Bsdf {
             Self::RoughConductor(model) => model.pdf(wo, wi),
             Self::RoughDielectric(model) => model.pdf(wo, wi),
             Self::DiffuseTransmission(model) => model.pdf(wo, wi),
+            Self::Plastic(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
     }
@@ -257,6 +266,7 @@ impl Bsdf {
             Self::RoughDielectric(model) => model.sample(wo, u_lobe, u),
             Self::ThinDielectric(model) => model.sample(wo, u_lobe),
             Self::DiffuseTransmission(model) => model.sample(wo, u_lobe, u),
+            Self::Plastic(model) => model.sample(wo, u_lobe, u),
             Self::Null => Some(straight_on(wo)),
         }
     }
@@ -271,7 +281,7 @@ impl Bsdf {
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {
-            Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) => false,
+            Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) | Self::Plastic(_) => false,
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),

@@ -27,7 +27,7 @@ const FAULTS: &[(&str, &str)] = &[
     (r"<shape/>", r#"2:2: <shape> lacks the attribute "type""#),
     (
         r#"<shape type="cube"><bsdf type="hair"/></shape>"#,
-        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "blendbsdf", "mask""#,
+        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "blendbsdf", "mask""#,
     ),
     (
         r#"<medium type="heterogeneous"><float name="x" value="1"/></medium>"#,

@@ -4,6 +4,15 @@ use super::*;
 use crate::desc::{MaterialKind, Varying};
 
 #[test]
+fn plastic_is_polypropylene_of_a_grey_base_that_keeps_its_hue() {
+    let MaterialKind::Plastic { eta, reflectance, nonlinear, tint } = material("<bsdf type=\"plastic\"/>").kind else {
+        panic!()
+    };
+    assert_eq!(eta.value, crate::desc::SpectrumDesc::Constant(1.49 / 1.000277));
+    assert_eq!((reflectance.value, nonlinear, tint), (Varying::constant(0.5), false, None));
+}
+
+#[test]
 fn a_blend_has_two_parts_a_mask_one_and_two_faces_are_made_two_sided() {
     let scene = parsed(&scene(
         r#"<shape type="sphere"><bsdf type="blendbsdf"><float name="weight" value="0.3"/>
