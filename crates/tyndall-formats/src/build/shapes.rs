@@ -328,13 +328,13 @@ fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str>
             EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
         }
         Shape::Patch(_) => return Err("a curved bilinear patch"),
-        Shape::Mesh(mesh) => match as_parallelogram(mesh) {
-            Some(parallelogram) => parallelogram,
-            None => {
+        Shape::Mesh(mesh) => {
+            let Some(parallelogram) = as_parallelogram(mesh) else {
                 let prims = 0..mesh.indices.len() as u32;
                 return Ok(Pieces::Each(prims.map(|prim| triangle(mesh.triangle(prim), mesh.reversed)).collect()));
-            }
-        },
+            };
+            parallelogram
+        }
     }))
 }
 

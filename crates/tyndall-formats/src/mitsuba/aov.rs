@@ -6,6 +6,7 @@ use tyndall::{
 };
 
 use super::object::{Object, Report};
+use crate::desc::Ignored;
 use crate::error::SceneError;
 
 /// The most layers of an image: each costs more memory than the light itself.
@@ -47,7 +48,11 @@ pub(super) fn layers(object: &mut Object, report: &mut Report) -> Vec<LayerKind>
             return layers;
         }
         match layer(name, kind) {
-            Some(layer) => layers.push(layer),
+            Some(layer) => {
+                let here = |reason| Ignored { span: list.span, reason };
+                report.ignored.extend(difference(layer.feature).map(here));
+                layers.push(layer);
+            }
             None if LATER.contains(&kind) => {
                 let message = format!("layers of \"{kind}\" are not known yet");
                 report.errors.push(SceneError::not_yet(list.span, message).help("leave it out"));
@@ -59,6 +64,17 @@ pub(super) fn layers(object: &mut Object, report: &mut Report) -> Vec<LayerKind>
         }
     }
     layers
+}
+
+/// What Mitsuba's numbers are that ours are not.
+fn difference(feature: Feature) -> Option<&'static str> {
+    match feature {
+        Feature::Depth => Some("depth is the distance from the eye, not from the near clipping plane"),
+        Feature::Primitive | Feature::Object => {
+            Some("indices are those of tyndall: shapes as the file has them, rectangles and cubes in triangles")
+        }
+        _ => None,
+    }
 }
 
 /// The layer `name` of a known kind, averaged over all samples as in Mitsuba.

@@ -42,7 +42,7 @@ pub(super) fn sensor<'t>(
             let error = SceneError::at(film.span, "the film of a \"radiancemeter\" has one pixel");
             builder.report.errors.push(error.help("set \"width\" and \"height\" to 1"));
         }
-        CameraKind::Batch(cameras) if film.width as usize % cameras.len() != 0 => {
+        CameraKind::Batch(cameras) if !(film.width as usize).is_multiple_of(cameras.len()) => {
             let message = format!("{} sensors do not divide {} columns", cameras.len(), film.width);
             builder.report.errors.push(SceneError::at(film.span, message).help("set another \"width\""));
         }
@@ -90,8 +90,8 @@ fn camera<'t>(
             };
             CameraKind::IrradianceMeter { shape }
         }
-        _ if parts.is_empty() => {
-            report.errors.push(SceneError::at(span, "the batch has no <sensor>"));
+        _ if cameras.is_empty() => {
+            report.errors.push(SceneError::at(span, "the batch has no <sensor> that can be used"));
             return None;
         }
         _ => CameraKind::Batch(cameras),

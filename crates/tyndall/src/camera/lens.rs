@@ -132,7 +132,7 @@ impl LensSystem {
         match &self.stop {
             Stop::Circular => (p.x.hypot(p.y) <= radius).then_some(1.0),
             Stop::Image { n, values } => {
-                let at = |v: f64| (v / radius + 1.0) / 2.0 * *n as f64;
+                let at = |v: f64| f64::midpoint(v / radius, 1.0) * *n as f64;
                 let (x, y) = (at(p.x), at(p.y));
                 let within = x >= 0.0 && y >= 0.0 && x < *n as f64 && y < *n as f64;
                 let value = within.then(|| values.get(y as usize * n + x as usize)).flatten()?;

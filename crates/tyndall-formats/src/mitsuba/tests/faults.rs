@@ -270,3 +270,17 @@ proptest! {
         }
     }
 }
+
+/// A batch of nothing that is known, and one that does not divide its film: errors, no division by zero.
+#[test]
+fn a_batch_has_sensors_that_share_its_film() {
+    let faults = |inside: &str| {
+        let text = format!("<scene version=\"3.0.0\"><sensor type=\"batch\">{inside}</sensor></scene>");
+        parse(Path::new("a.xml"), &text, &[]).map(|_| ()).unwrap_err().to_string()
+    };
+    for inside in ["", "<sensor type=\"distant\"/>", "<sensor type=\"batch\"/>"] {
+        assert!(faults(inside).contains("the batch has no <sensor> that can be used"), "{inside}");
+    }
+    let five = "<sensor type=\"perspective\"/>".repeat(5);
+    assert!(faults(&five).contains("5 sensors do not divide 768 columns"));
+}
