@@ -17,7 +17,7 @@ use crate::{
     light::Target,
     material::Material,
     math::{Ray, Vec3, rounding::gamma},
-    medium::{Inside, MediumId, Within},
+    medium::{Inside, MediumId, Skin, Within},
     path::{Vertex, shadow},
     phase::Phase,
     sampling::{Sampler, warp},
@@ -77,12 +77,15 @@ impl Div<f32> for Radiance {
     }
 }
 
+/// What surrounds a point, as the walk has noted it: points are many on the stack of a recursion, and small.
+type Record = u32;
+
 /// A point `x` or `y` of the slides.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     place: Place,
     /// What was around it on the side from which it was reached.
-    within: Within,
+    within: Record,
     /// The medium there.
     inside: Inside,
     /// Its distance from where the ray that found it began [length]: the slides' `|y − x|`.
@@ -92,7 +95,7 @@ pub(super) struct Point {
 #[derive(Debug, Clone, Copy)]
 enum Place {
     Eye(Vec3),
-    Surface { hit: Interaction, bsdf: Bsdf, from_outside: bool, beyond: Within },
+    Surface { hit: Interaction, bsdf: Bsdf, from_outside: bool, beyond: Record },
     Collision { p: Vec3, phase: Phase },
     Infinity,
 }
@@ -155,6 +158,8 @@ pub(super) struct World<'a> {
     lane: usize,
     sees_media: bool,
     depth: u32,
+    /// What the points of the walk are within; first, the eye.
+    records: Vec<Within>,
     sampler: &'a mut Sampler,
     tally: &'a mut Tally,
 }
@@ -168,17 +173,21 @@ impl<'a> World<'a> {
         sampler: &'a mut Sampler,
         tally: &'a mut Tally,
     ) -> Self {
-        Self { scene, wavelengths, lane, sees_media, depth: 0, sampler, tally }
+        let records = vec![*scene.around_camera()];
+        Self { scene, wavelengths, lane, sees_media, depth: 0, records, sampler, tally }
     }
 
     /// The eye at `p`.
     pub(super) fn eye(&self, p: Vec3) -> Point {
-        let within = *self.scene.around_camera();
-        Point { place: Place::Eye(p), within, inside: self.inside(&within), distance: 0.0 }
+        Point { place: Place::Eye(p), within: 0, inside: self.inside(0), distance: 0.0 }
     }
 
-    fn inside(&self, within: &Within) -> Inside {
-        if self.sees_media { within.inside(self.scene, &self.wavelengths) } else { Inside::Vacuum }
+    fn inside(&self, within: Record) -> Inside {
+        if self.sees_media {
+            self.records[within as usize].inside(self.scene, &self.wavelengths)
+        } else {
+            Inside::Vacuum
+        }
     }
 
     /// The estimate of a walk that has ended, its loss tallied.
@@ -203,7 +212,7 @@ impl<'a> World<'a> {
         self.depth += 1;
         self.tally.rays += 1;
         let (mut ray, within) = self.leave(x, omega);
-        let inside = self.inside(&within);
+        let inside = self.inside(within);
         let mut gone = 0.0;
         loop {
             let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
@@ -213,7 +222,7 @@ impl<'a> World<'a> {
             let distance = gone + hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
             let t = hit.t;
             let mut hit = self.scene.geometry.interaction(&ray, &hit);
-            let (skin, beyond) = within.meet(self.scene, &mut hit, omega, &self.wavelengths, self.lane, self.tally);
+            let (skin, beyond) = self.meet(within, &mut hit, omega);
             let material = self.scene.meet(&hit, omega, || self.sampler.next_1d());
             if matches!(material, Material::Hole) {
                 gone += t;
@@ -224,6 +233,17 @@ impl<'a> World<'a> {
             let from_outside = omega.dot(hit.ng) < 0.0;
             return Some(Point { place: Place::Surface { hit, bsdf, from_outside, beyond }, within, inside, distance });
         }
+    }
+
+    /// What is at a surface, and what is behind it.
+    fn meet(&mut self, within: Record, hit: &mut Interaction, omega: Vec3) -> (Skin, Record) {
+        let before = self.records[within as usize];
+        let (skin, beyond) = before.meet(self.scene, hit, omega, &self.wavelengths, self.lane, self.tally);
+        if beyond == before {
+            return (skin, within);
+        }
+        self.records.push(beyond);
+        (skin, self.records.len() as Record - 1)
     }
 
     /// `traceRay` past all surfaces without a material, whatever they emit.
@@ -237,7 +257,7 @@ impl<'a> World<'a> {
 
     /// The ray from `x` along `ω`, and what it starts within.
     #[allow(clippy::unused_self)] // the slides' primitives are called alike
-    fn leave(&self, x: &Point, omega: Vec3) -> (Ray, Within) {
+    fn leave(&self, x: &Point, omega: Vec3) -> (Ray, Record) {
         match &x.place {
             Place::Surface { hit, from_outside, beyond, .. } => {
                 let crossed = (omega.dot(hit.ng) > 0.0) != *from_outside;
@@ -280,7 +300,7 @@ impl<'a> World<'a> {
             Inside::Medium { id, phase, .. } => Some((id, phase)),
             Inside::Mixture { .. } => {
                 let u = self.random();
-                let part = y.within.choose_part(self.scene, &self.wavelengths, self.lane, u)?;
+                let part = self.records[y.within as usize].choose_part(self.scene, &self.wavelengths, self.lane, u)?;
                 Some((part.id, part.phase))
             }
         }
@@ -386,13 +406,21 @@ impl<'a> World<'a> {
     pub(super) fn visibility(&mut self, x: &Point, omega_prime: Vec3, y: &Luminaire) -> f32 {
         let (ray, within) = self.leave(x, omega_prime);
         let wavelengths = (&self.wavelengths, self.lane);
-        shadow::visible(self.scene, ray.origin, omega_prime, &y.target, &within, wavelengths, self.tally)
+        shadow::visible(
+            self.scene,
+            ray.origin,
+            omega_prime,
+            &y.target,
+            &self.records[within as usize],
+            wavelengths,
+            self.tally,
+        )
     }
 
     /// `attenuation(x, y)`: `exp(−∫ σ_t)` from `x` along `ω′` to `y`, 0 where a surface stands between.
     pub(super) fn attenuation(&mut self, x: &Point, omega_prime: Vec3, y: &Luminaire) -> f32 {
         let (ray, within) = self.leave(x, omega_prime);
-        let (scene, start) = (self.scene, (self.inside(&within), &within));
+        let (scene, start) = (self.scene, (self.inside(within), &self.records[within as usize]));
         let wavelengths = (&self.wavelengths, self.lane);
         shadow::transmittance(scene, ray.origin, omega_prime, &y.target, start, wavelengths, self.tally)
             .map_or(0.0, |t| t.lane(self.lane))
