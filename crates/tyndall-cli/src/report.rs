@@ -54,6 +54,8 @@ pub(crate) struct Statistics {
     pub(crate) energy_lost_to_limit: f64,
     /// Paths that left a medium without meeting its boundary, by rounding, and ended there.
     pub(crate) leaks: u64,
+    /// Crossings into more bodies than a path can keep count of.
+    pub(crate) lost_bodies: u64,
     /// Samples that were not a radiance (NaN, infinite or negative) and count as zero.
     pub(crate) non_finite_samples: u64,
     /// The first of them.
@@ -135,6 +137,7 @@ impl Statistics {
             truncated_paths: tally.truncated_paths,
             energy_lost_to_limit: tally.truncated_throughput / tally.paths.max(1) as f64,
             leaks: tally.leaks,
+            lost_bodies: tally.lost_bodies,
             non_finite_samples: tally.bad_samples,
             non_finite_list: tally.bad_sample_list.iter().map(BadSample::from).collect(),
         }
@@ -170,6 +173,12 @@ impl Statistics {
         }
         if self.leaks > 0 {
             lines.push(format!("  warning: {} paths left a medium without meeting its boundary", count(self.leaks)));
+        }
+        if self.lost_bodies > 0 {
+            let lost = count(self.lost_bodies);
+            lines.push(format!(
+                "  warning: {lost} times a path entered a body while in eight others: it counted as not there"
+            ));
         }
         if let Some(first) = self.non_finite_list.first() {
             lines.push(format!(

@@ -152,16 +152,17 @@ impl<'a> Builder<'a> {
             }
         };
         let body = BodyId(gathered.objects.len() as u32);
-        let body = self.priority(desc)?.map(|priority| Member { body, priority });
+        let body = desc.priority.map(|priority| Member { body, priority: priority.value });
+        self.check_priority(desc)?;
         for object in added {
             self.bind(gathered, desc, object, body)?;
         }
         Some(())
     }
 
-    /// The priority of a body: of something that light can enter, that does not shine, and whose outside is left to others.
-    fn priority(&mut self, desc: &ShapeDesc) -> Option<Option<i32>> {
-        let Some(priority) = desc.priority else { return Some(None) };
+    /// A body with a priority must be something that light can enter, that does not shine, and whose outside is left to others.
+    fn check_priority(&mut self, desc: &ShapeDesc) -> Option<()> {
+        let Some(priority) = desc.priority else { return Some(()) };
         let kind = self.desc.material(desc.material.value).map(|material| &material.kind);
         if !matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::Interface) | None) {
             return self.fail(
@@ -191,7 +192,7 @@ impl<'a> Builder<'a> {
                     .related(priority.span, "its priority"),
             );
         }
-        Some(Some(priority.value))
+        Some(())
     }
 
     /// Material, media and light of an object that was just added.

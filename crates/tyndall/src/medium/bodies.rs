@@ -93,13 +93,23 @@ struct Entry {
     count: u32,
 }
 
+/// What a surface without a priority has said of the medium, in spite of the bodies around it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Said {
+    /// None was crossed since the last surface of a body.
+    #[default]
+    Nothing,
+    /// This is here.
+    Medium(Option<MediumId>),
+}
+
 /// What surrounds a point: the bodies that it is in, and what surfaces without a priority have said.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Within {
     /// The medium outside of all bodies.
     around: Option<MediumId>,
     /// What a surface without a priority has said, since the last surface of a body.
-    said: Option<Option<MediumId>>,
+    said: Said,
     entries: [Entry; DEPTH],
     len: usize,
 }
@@ -125,7 +135,7 @@ impl Within {
 
     /// Notes that a surface of a body is crossed; `false` if the record is full and the body counts as not there.
     pub(super) fn cross_body(&mut self, body: BodyId, instance: u32, inward: bool, closed: bool) -> bool {
-        self.said = None;
+        self.said = Said::Nothing;
         let found = self.entries[..self.len].iter().position(|e| (e.body, e.instance) == (body.0, instance));
         match (found, inward) {
             // Of a surface with an edge nobody can count the crossings: the last one holds.
@@ -153,14 +163,14 @@ impl Within {
         if self.len == 0 {
             self.around = medium;
         } else {
-            self.said = Some(medium);
+            self.said = Said::Medium(medium);
         }
     }
 
     /// Says what the medium is, in spite of all bodies (a camera whose medium the scene gives).
     pub(super) fn say(&mut self, medium: MediumId) {
         if self.len > 0 {
-            self.said = Some(Some(medium));
+            self.said = Said::Medium(Some(medium));
         }
         self.around = Some(medium);
     }
@@ -182,13 +192,16 @@ impl Within {
 
     /// The media that are here.
     fn media(&self, scene: &Scene) -> impl Iterator<Item = MediumId> {
-        let here = if self.said.is_some() { None } else { Some(self.winners(scene).filter_map(|b| b.medium)) };
-        let written = if self.len == 0 { self.around } else { self.said.flatten() };
-        here.into_iter().flatten().chain(written)
+        let (bodies, written) = match self.said {
+            _ if self.len == 0 => (false, self.around),
+            Said::Nothing => (true, None),
+            Said::Medium(medium) => (false, medium),
+        };
+        let bodies = bodies.then(|| self.winners(scene).filter_map(|body| body.medium));
+        bodies.into_iter().flatten().chain(written)
     }
 
     /// The medium here, with its coefficients.
-    #[inline]
     pub fn inside(&self, scene: &Scene, wavelengths: &Wavelengths) -> Inside {
         if self.len == 0 { Inside::of(scene, self.around, wavelengths) } else { self.inside_bodies(scene, wavelengths) }
     }

@@ -33,7 +33,9 @@ impl Geometry {
             });
         }
         hits.extend(triangles.into_iter().map(|((t, object, prim, uv), copy)| found(object, prim, uv, t, copy)));
-        hits.iter().for_each(|hit| visit(self.interaction(&ray, hit)));
+        for hit in &hits {
+            visit(self.interaction(&ray, hit));
+        }
     }
 
     /// A primitive that is no triangle and no group, in the space of the tree that holds it.
