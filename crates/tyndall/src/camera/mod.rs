@@ -80,7 +80,7 @@ pub enum CameraModel {
 pub struct CameraRay {
     /// Where light is looked for. Of a sample that weighs nothing it is any.
     pub ray: Ray,
-    /// A factor on the radiance along it; 0 for a ray that the lens stops, negative where the filter is.
+    /// A factor on the radiance along it [1]; 0 for a ray that the lens stops, negative where the filter is.
     pub weight: f32,
 }
 
