@@ -1,5 +1,6 @@
 //! A scattering ball: what of the light sent at it, or made in it, is absorbed or escapes.
 
+use glam::DVec3;
 use tyndall::{
     math::{Ray, Vec3},
     tally::Tally,
@@ -69,7 +70,10 @@ pub fn balance(
     within("the radius", radius, "positive", |r| r > 0.0 && r.is_finite())?;
     let mut world = World::default();
     world.sphere(radius, substance, &Substance::VACUUM)?;
-    let scene = world.build(if source == Source::Beam { &Substance::VACUUM } else { substance })?;
+    let scene = match source {
+        Source::Beam => world.build(&Substance::VACUUM, 2.0 * radius * DVec3::Z)?,
+        Source::Volume => world.build(substance, DVec3::ZERO)?,
+    };
     let batch = |number| -> Batch {
         let mut recorder = Recorder { totals: vec![0.0; 2 + ORDERS] };
         let mut tally = Tally::default();

@@ -6,6 +6,7 @@
 
 use std::f32::consts::PI;
 
+use glam::DVec3;
 use tyndall::{
     math::{Ray, Vec3},
     sampling::rng::Rng,
@@ -75,7 +76,7 @@ pub fn fluence(
     crate::world::within("the absorption coefficient", substance.sigma_a, "positive, or light never ends", |s| {
         s > 0.0
     })?;
-    let scene = World::default().build(substance)?;
+    let scene = World::default().build(substance, DVec3::ZERO)?;
     let batch = |number| -> Batch {
         let mut recorder = Recorder { radii, totals: vec![0.0; radii.len() + 1] };
         let mut tally = Tally::default();

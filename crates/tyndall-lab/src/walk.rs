@@ -7,6 +7,7 @@
 //! ⟨r²⟩ = 2 (n/(1 − g) − g (1 − gⁿ)/(1 − g)²)
 //! ```
 
+use glam::DVec3;
 use tyndall::math::{Ray, Vec3};
 use tyndall::tally::Tally;
 
@@ -63,7 +64,7 @@ pub fn moments(
     if flights.is_empty() || flights.contains(&0) {
         return Err(SetupError::Missing("number of flights"));
     }
-    let scene = World::default().build(&Substance::of_albedo(1.0, g))?;
+    let scene = World::default().build(&Substance::of_albedo(1.0, g), DVec3::ZERO)?;
     let batch = |number| -> Batch {
         let mut recorder = Recorder { flights, totals: vec![0.0; 3 * flights.len()] };
         let mut tally = Tally::default();

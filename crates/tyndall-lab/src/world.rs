@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use glam::{DMat4, DVec3};
 use tyndall::{
     camera::{Camera, CameraModel, Perspective, View},
     film::Filter,
@@ -163,12 +164,12 @@ impl World {
         Ok(())
     }
 
-    /// The world, where photons start in `around`.
-    pub(crate) fn build(mut self, around: &Substance) -> Result<Scene, SetupError> {
+    /// The world, where photons start at `source` [length] in `around`.
+    pub(crate) fn build(mut self, around: &Substance, source: DVec3) -> Result<Scene, SetupError> {
         let medium = self.medium(around)?;
         let camera = Camera {
             view: View {
-                to_world: Transform::IDENTITY,
+                to_world: Transform::new(DMat4::from_translation(source)).unwrap_or(Transform::IDENTITY),
                 model: CameraModel::Perspective(Perspective::pinhole([-1.0, 1.0, -1.0, 1.0])),
             },
             width: 1,

@@ -93,7 +93,7 @@ fn write(name: &str, lamps: &[Lamp]) -> Result<PathBuf> {
     for corner in lamps.iter().flat_map(|lamp| lamp.corners) {
         let _ = write!(points, "{} {} {}  ", corner[0] as f32, corner[1] as f32, corner[2] as f32);
     }
-    let indices: String = (0..3 * lamps.len()).map(|i| format!("{i} ")).collect();
+    let indices = (0..3 * lamps.len()).map(|i| i.to_string()).collect::<Vec<_>>().join(" ");
     let radiance = lamps[0].radiance;
     let text = format!(
         r#"LookAt 0 -0.95 1  0 0 0.9  0 0 1

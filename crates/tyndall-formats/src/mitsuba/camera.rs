@@ -97,7 +97,9 @@ fn camera<'t>(
         _ => CameraKind::Batch(cameras),
     };
     object.ignore(&["near_clip", "far_clip"], "nothing is too near or too far to be seen", report);
-    object.ignore(&["focus_distance"], "through a pinhole everything is in focus", report);
+    if plugin != "thinlens" {
+        object.ignore(&["focus_distance"], "without a lens everything is in focus", report);
+    }
     object.ignore(&["shutter_open", "shutter_close"], "nothing moves", report);
     object.not_yet(&["srf"], report);
     object.finish(report);

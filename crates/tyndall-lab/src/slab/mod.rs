@@ -17,6 +17,7 @@
 
 mod detector;
 
+use glam::DVec3;
 use tyndall::math::{Ray, Vec3};
 use tyndall::scene::Scene;
 use tyndall::tally::Tally;
@@ -226,7 +227,7 @@ impl Setup {
         if depth.is_finite() {
             world.plane(-depth, radius, &above, &around(self.n_below))?;
         }
-        world.build(&around(self.n_above))
+        world.build(&around(self.n_above), self.height() * DVec3::Z)
     }
 
     /// How wide the planes are [length]: light that gets farther is lost, and counted.

@@ -92,12 +92,11 @@ impl Hierarchy {
         let mut infinite = Vec::new();
         for (index, light) in lights.iter().enumerate() {
             let id = LightId(index as u32);
-            match LightBounds::of(light) {
-                Some(bounds) => leaves.push((bounds, id)),
-                None => {
-                    homes[index] = Home::Infinity(infinite.len() as u32);
-                    infinite.push(id);
-                }
+            if let Some(bounds) = LightBounds::of(light) {
+                leaves.push((bounds, id));
+            } else {
+                homes[index] = Home::Infinity(infinite.len() as u32);
+                infinite.push(id);
             }
         }
         // A colour may shine without luminance: everyone keeps a share of the mean.
