@@ -1,6 +1,6 @@
 //! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `serialized`, and `shapegroup` with `instance`.
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use super::object::Object;
 use super::scene::Builder;
@@ -77,6 +77,8 @@ impl<'t> Builder<'t> {
                 if let Some(center) = object.point("center", report) {
                     *to_world *= DMat4::from_translation(center.value);
                 }
+                // Its v runs from the pole at +z to that at −z, ours the other way.
+                *to_world *= DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
                 let radius = object.float("radius", |radius| radius > 0.0, "greater than 0", report);
                 ShapeKind::Sphere { radius: radius.map_or(1.0, |radius| radius.value) }
             }

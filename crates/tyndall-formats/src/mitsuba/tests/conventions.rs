@@ -386,3 +386,14 @@ fn a_lamp_and_a_sampler_may_stand_where_they_are_only_referred_to() {
     assert!(scene.shapes[0].emission.is_some() && scene.lights.is_empty());
     assert_eq!(scene.sampler.spp.value, 7);
 }
+
+/// Mitsuba's v of a sphere runs from the pole at +z down (θ/π), the description's from the pole at −z up: the sphere is
+/// mirrored in z, which changes nothing else of it.
+#[test]
+fn the_v_of_a_sphere_runs_down() {
+    let sphere = "<shape type=\"sphere\"><point name=\"center\" value=\"1,2,3\"/></shape>";
+    let to_world = parsed(&scene(sphere)).shapes[0].to_world;
+    assert_eq!(to_world.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(to_world.transform_vector3(DVec3::Z), -DVec3::Z);
+    assert_eq!(to_world.transform_vector3(DVec3::X), DVec3::X);
+}
