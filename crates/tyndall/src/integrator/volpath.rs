@@ -185,7 +185,6 @@ impl Path {
 
     /// A surface that is open in part was passed with that probability: as a medium is, for light sampling through it.
     fn pass_opening(&mut self, scene: &Scene, hit: &Interaction) {
-        self.history.passed();
         // The surface of a body is there or it is not, and not in part.
         if !matches!(scene.material(hit), Material::Null) && scene.object(hit).body.is_none() {
             let open = scene.openness(hit, self.ray.dir).part;

@@ -67,11 +67,12 @@ impl Path {
             Some(coefficients) => {
                 let sigma_t = coefficients.sigma_t.lane(self.hero);
                 if sigma_t > 0.0 {
-                    // The stratified number of a vertex serves once: behind a boundary it has been looked at already.
-                    let u = match self.history.passed {
+                    // The stratified number of a vertex serves once: in the next medium behind a boundary it is known.
+                    let u = match self.history.flights {
                         0 => self.sampler.flight(self.history.vertices),
                         _ => self.sampler.rng.next_positive(),
                     };
+                    self.history.flew();
                     -fast::ln(u) / sigma_t
                 } else {
                     f32::INFINITY

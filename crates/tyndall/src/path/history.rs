@@ -10,8 +10,9 @@ pub struct History {
     /// Product of `1/η²` over the boundaries crossed, undone: radiance is compressed in glass, and roulette must not
     /// take that for a loss [1].
     pub eta_scale: f32,
-    /// Surfaces passed straight through since anything last scattered: boundaries and holes.
-    pub passed: u32,
+    /// Free flights whose length was drawn since anything last scattered: more than one where boundaries or holes were
+    /// passed straight through.
+    pub flights: u32,
     /// Dirac lobes in a row: mirrors and glass since anything last scattered.
     pub specular_run: u32,
     /// Whether the path has gone on with its hero wavelength alone.
@@ -38,23 +39,23 @@ impl History {
         }
     }
 
-    /// Notes a surface that was passed straight through.
+    /// Notes a free flight whose length was drawn.
     #[inline]
-    pub fn passed(&mut self) {
-        self.passed = self.passed.saturating_add(1);
+    pub fn flew(&mut self) {
+        self.flights = self.flights.saturating_add(1);
     }
 
     /// Notes a scattering by a Dirac lobe, or by another.
     #[inline]
     pub fn scattered(&mut self, specular: bool) {
         self.vertices = self.vertices.saturating_add(1);
-        self.passed = 0;
+        self.flights = 0;
         self.specular_run = if specular { self.specular_run.saturating_add(1) } else { 0 };
     }
 }
 
 impl Default for History {
     fn default() -> Self {
-        Self { vertices: 0, order: 0, eta_scale: 1.0, passed: 0, specular_run: 0, parted: false }
+        Self { vertices: 0, order: 0, eta_scale: 1.0, flights: 0, specular_run: 0, parted: false }
     }
 }
