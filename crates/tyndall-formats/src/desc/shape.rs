@@ -45,6 +45,8 @@ pub enum ShapeKind {
         radius: f64,
         /// Inner radius: 0 for a full disk.
         inner_radius: f64,
+        /// Whether u is the radius and v the azimuth (Mitsuba), or u the azimuth and v the way in from the rim (pbrt).
+        u_is_radius: bool,
     },
     /// The square [-1, 1]² at z = 0, normal +z.
     Rectangle,

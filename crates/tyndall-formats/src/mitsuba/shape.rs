@@ -82,7 +82,7 @@ impl<'t> Builder<'t> {
                 let radius = object.float("radius", |radius| radius > 0.0, "greater than 0", report);
                 ShapeKind::Sphere { radius: radius.map_or(1.0, |radius| radius.value) }
             }
-            "disk" => ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0 },
+            "disk" => ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, u_is_radius: true },
             "rectangle" | "cube" => {
                 object.ignore(&["face_normals"], "its faces are flat", report);
                 if plugin == "cube" { ShapeKind::Cube } else { ShapeKind::Rectangle }

@@ -107,7 +107,7 @@ fn disk(p: &mut Params) -> ShapeKind {
         p.error(SceneError::at(inner.span, "\"innerradius\" must be less than \"radius\""));
     }
     p.later_unless("phimax", 360.0);
-    ShapeKind::Disk { height, radius, inner_radius: inner.value }
+    ShapeKind::Disk { height, radius, inner_radius: inner.value, u_is_radius: false }
 }
 
 /// What triangles and patches have in common: corners, and one normal and one coordinate for each or none.

@@ -8,8 +8,17 @@ use glam::DVec3;
 use super::{ShapeError, instance::outward, interaction::Point};
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
 
-/// The points `centre + x·a + y·b` with `inner² ≤ x² + y² ≤ 1`. `u` is the azimuth in turns; `v` runs from 0 at the
-/// rim to 1 at the inner edge.
+/// The texture coordinates of a disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DiskMapping {
+    /// u is the azimuth in turns; v runs from 0 at the rim to 1 at the inner edge (pbrt).
+    #[default]
+    AzimuthInward,
+    /// u is the radius, over that of the rim; v is the azimuth in turns (Mitsuba).
+    OutwardAzimuth,
+}
+
+/// The points `centre + x·a + y·b` with `inner² ≤ x² + y² ≤ 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disk {
     /// Centre [length].
@@ -20,6 +29,8 @@ pub struct Disk {
     pub b: Vec3,
     /// Radius of the hole over that of the disk, in `[0, 1)` [1].
     pub inner: f32,
+    /// Its texture coordinates.
+    pub mapping: DiskMapping,
     /// Whether the normal is `−a × b`.
     pub reversed: bool,
 }
@@ -32,8 +43,15 @@ impl Disk {
             a: Vec3::X * radius,
             b: Vec3::Y * radius,
             inner: inner_radius / radius,
+            mapping: DiskMapping::default(),
             reversed: false,
         }
+    }
+
+    /// The same with other texture coordinates.
+    #[must_use]
+    pub fn mapped(self, mapping: DiskMapping) -> Self {
+        Self { mapping, ..self }
     }
 
     /// Unit normal.
@@ -109,17 +127,48 @@ impl Disk {
         let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
         let (x, y) = self.coordinates(ray.origin.as_dvec3() - centre + ray.dir.as_dvec3() * f64::from(t));
         let turn = y.atan2(x) / std::f64::consts::TAU;
-        let u = if turn < 0.0 { turn + 1.0 } else { turn };
+        let turn = if turn < 0.0 { turn + 1.0 } else { turn };
         let r = x.hypot(y);
-        let v = (1.0 - r) / (1.0 - f64::from(self.inner));
-        let dpdu = if r == 0.0 { b } else { b * x - a * y } * std::f64::consts::TAU;
+        // At the centre the azimuth is 0.
+        let (cos, sin) = if r == 0.0 { (1.0, 0.0) } else { (x / r, y / r) };
+        let (uv, dpdu) = match self.mapping {
+            DiskMapping::AzimuthInward => {
+                let v = (1.0 - r) / (1.0 - f64::from(self.inner));
+                let along = if r == 0.0 { 1.0 } else { r };
+                ([turn, v], (b * cos - a * sin) * (along * std::f64::consts::TAU))
+            }
+            DiskMapping::OutwardAzimuth => ([r, turn], a * cos + b * sin),
+        };
         Point {
             p: centre + a * x + b * y,
             error: (centre.abs().max_element() + a.abs().max_element() + b.abs().max_element()) * (-45f64).exp2(),
             ng: n,
             ns: n,
-            uv: Vec2::new(u as f32, v as f32),
+            uv: Vec2::new(uv[0] as f32, uv[1] as f32),
             dpdu,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quarter turn around, half way from the centre to the rim, in both conventions; the tangent is ∂p/∂u, by difference.
+    #[test]
+    fn texture_coordinates_follow_their_convention() {
+        let uv_at = |disk: &Disk, p: Vec3| disk.point(&Ray::new(p + Vec3::Z, -Vec3::Z), 1.0);
+        let place = Vec3::new(0.0, 0.5, 0.0);
+        for (mapping, expected) in
+            [(DiskMapping::AzimuthInward, Vec2::new(0.25, 0.5)), (DiskMapping::OutwardAzimuth, Vec2::new(0.5, 0.25))]
+        {
+            let disk = Disk::new(0.0, 1.0, 0.0).mapped(mapping);
+            let at = uv_at(&disk, place);
+            assert!((at.uv - expected).length() < 1e-6, "{mapping:?}: {}", at.uv);
+            // A small step along ∂p/∂u changes u by the step, and v not.
+            let step = 1e-3;
+            let on = uv_at(&disk, place + at.dpdu.as_vec3() * step);
+            assert!((on.uv - at.uv - Vec2::new(step, 0.0)).length() < 1e-4, "{mapping:?}: {} {}", at.uv, on.uv);
         }
     }
 }

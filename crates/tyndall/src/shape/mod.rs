@@ -26,7 +26,7 @@ mod sphere;
 
 pub use builder::{GeometryBuilder, GroupId, ShapeError};
 pub use census::Census;
-pub use disk::Disk;
+pub use disk::{Disk, DiskMapping};
 pub use geometry::{Geometry, Hit, ObjectId, Shape};
 pub use interaction::{Interaction, offset_point};
 pub use mesh::Mesh;

@@ -37,7 +37,10 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
         LightSource "infinite" "string filename" "sky.exr" "float scale" 2"#,
     );
     assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 1.0 });
-    assert_eq!(desc.shapes[1].kind, ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0 });
+    assert_eq!(
+        desc.shapes[1].kind,
+        ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, u_is_radius: false }
+    );
     // The material of shapes before any Material comes first.
     let [default, diffuse, conductor, dielectric, interface, pane, leaf] = &desc.materials[..] else { panic!() };
     for material in [default, diffuse] {
