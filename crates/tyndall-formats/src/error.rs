@@ -141,6 +141,8 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 #[derive(Clone, Debug, Default)]
 pub struct ErrorList {
     errors: Vec<SceneError>,
+    /// Kept apart: they do not end the reading, and the first ones tell enough.
+    warnings: Vec<SceneError>,
     dropped: usize,
     unsupported: Unsupported,
 }
@@ -156,9 +158,10 @@ impl ErrorList {
         if (error.severity, self.unsupported) == (Severity::NotYet, Unsupported::Warn) {
             error.severity = Severity::Warning;
         }
-        if self.errors.len() < MOST_KEPT {
-            self.errors.push(error);
-        } else {
+        let list = if error.severity == Severity::Warning { &mut self.warnings } else { &mut self.errors };
+        if list.len() < MOST_KEPT {
+            list.push(error);
+        } else if error.severity != Severity::Warning {
             self.dropped += 1;
         }
     }
@@ -182,12 +185,12 @@ impl ErrorList {
 
     /// Whether nothing is wrong, but for what is only worth a warning.
     pub fn is_empty(&self) -> bool {
-        self.dropped == 0 && self.warnings().len() == self.errors.len()
+        self.errors.is_empty()
     }
 
     /// What is only worth a warning.
     pub fn warnings(&self) -> Vec<SceneError> {
-        self.errors.iter().filter(|e| e.severity == Severity::Warning).cloned().collect()
+        self.warnings.clone()
     }
 
     /// What was found so far, in order.
@@ -205,7 +208,8 @@ impl ErrorList {
 
     /// All faults with the texts they are in, from top to bottom.
     pub fn into_diagnostics(self, sources: SourceMap) -> Diagnostics {
-        Diagnostics { dropped: self.dropped, ..Diagnostics::new(self.errors, sources) }
+        let all = self.errors.into_iter().chain(self.warnings).collect();
+        Diagnostics { dropped: self.dropped, ..Diagnostics::new(all, sources) }
     }
 }
 

@@ -93,6 +93,15 @@ mod tests {
         assert_eq!(desc.media[0].scale.value, 0.0, "a medium that is not known yet is clear");
     }
 
+    /// However often a word occurs that is left out: more often than faults are kept.
+    #[test]
+    fn a_scene_with_thousands_of_strands_is_left_without_them() {
+        let strand = "Shape \"curve\" \"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3]\n";
+        let text = format!("WorldBegin\n{}Shape \"sphere\"\n", strand.repeat(5000));
+        let desc = read("strands.pbrt", &text, Unsupported::Warn).unwrap();
+        assert_eq!(desc.shapes.len(), 1);
+    }
+
     #[test]
     fn a_mitsuba_scene_without_what_is_not_known_yet_is_left() {
         let text = r#"<scene version="3.0.0"><sensor type="perspective"/>

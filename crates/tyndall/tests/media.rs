@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 
 use common::{World, assert_mean, diffuse, glass, medium};
 use tyndall::{
+    camera::{Batch, CameraModel, View},
     integrator::{Analog, Integrator, VolPath},
     lecture::Lecture,
     light::{Light, PointLight},
@@ -404,6 +405,18 @@ fn placed_media_without_priorities_hold_and_are_found() {
     assert_all("absorbing", inside, passes(0.9), 0.03, 20_000);
     let outside = || world(Vec3::new(5.0, 0.3, 0.0), medium([0.0; 3], DEPTHS, 0.5));
     assert_all("scattering", outside, [1.0; 3], 0.02, 20_000);
+}
+
+/// A batch of cameras stands where its cameras do, and not at the origin of the world, which a fog encloses here: looking away
+/// from the fog, they see the sky as it is.
+#[test]
+fn a_batch_is_where_its_cameras_are() {
+    let mut world = World::seen(Vec3::new(0.0, 5.0, 0.0), Vec3::new(0.0, 9.0, 0.0));
+    let views = vec![world.camera.view.clone(), world.camera.view.clone()];
+    world.camera.view = View { to_world: Transform::IDENTITY, model: CameraModel::Batch(Batch { views }) };
+    world.sphere(Vec3::ZERO, 1.0, Material::Null, Some(absorber(1.0)));
+    world.sky(1.0);
+    assert_mean("batch", &world.measure(&VolPath::default(), 1_000), [1.0; 3], 0.01);
 }
 
 /// Surfaces with edges have no inside that could be counted: what the last one said holds. Disks at 0 and −1 look up and

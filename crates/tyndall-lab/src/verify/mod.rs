@@ -114,7 +114,8 @@ impl Effort {
         number: usize,
         mut measure: impl FnMut(Share) -> Result<Vec<Check>, SetupError>,
     ) -> Result<Experiment, SetupError> {
-        let first = mix64(self.seed ^ mix64(number as u64 ^ mix64(family.len() as u64)));
+        // Of each experiment of each table its own.
+        let first = family.bytes().fold(mix64(self.seed ^ mix64(number as u64)), |key, b| mix64(key ^ u64::from(b)));
         let share = |k| Share {
             photons: self.photons / REPLICATES,
             seed: first.wrapping_add(k),

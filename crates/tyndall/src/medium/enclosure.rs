@@ -15,7 +15,7 @@ use super::{
     crossing::{COINCIDENT, coincident},
 };
 use crate::{
-    math::{Ray, Vec3},
+    math::{Ray, Vec2, Vec3},
     scene::Scene,
     shape::{Interaction, ObjectId},
 };
@@ -32,9 +32,10 @@ enum Shell {
     Object(u32, u32),
 }
 
-/// What the camera is in. What the scene says about its medium holds.
+/// What the camera is in, where the ray through the middle of the image starts. What the scene says about its medium holds.
 pub(crate) fn around_camera(scene: &Scene) -> Within {
-    let mut within = within(scene, scene.camera.view.to_world.point(Vec3::ZERO));
+    let middle = Vec2::splat(0.5);
+    let mut within = within(scene, scene.camera.view.ray(middle, middle).ray.origin);
     if let Some(medium) = scene.camera.medium {
         within.say(medium);
     }
