@@ -1,14 +1,11 @@
 //! A scattering ball: what of the light sent at it, or made in it, is absorbed or escapes.
 
 use glam::DVec3;
-use tyndall::{
-    math::{Ray, Vec3},
-    tally::Tally,
-};
+use tyndall::math::{Ray, Vec3};
 
-use crate::photon::{Collision, Detector, Photon, launch};
+use crate::photon::{Collision, Detector, Photon, shoot};
 use crate::point::{any_direction, source_stream};
-use crate::run::{Batch, Estimate, Sums, Verdict, photons_of, run};
+use crate::run::{Estimate, Sums, Verdict};
 use crate::world::{SetupError, Substance, World, within};
 
 /// Where the light comes from.
@@ -53,6 +50,10 @@ impl Detector for Recorder {
             *total += photon.weight();
         }
     }
+
+    fn totals(self) -> Vec<f64> {
+        self.totals
+    }
 }
 
 /// Sends photons at a ball of `radius` [length] in vacuum, or starts them in it.
@@ -74,16 +75,9 @@ pub fn balance(
         Source::Beam => world.build(&Substance::VACUUM, 2.0 * radius * DVec3::Z)?,
         Source::Volume => world.build(substance, DVec3::ZERO)?,
     };
-    let batch = |number| -> Batch {
-        let mut recorder = Recorder { totals: vec![0.0; 2 + ORDERS] };
-        let mut tally = Tally::default();
-        for photon in photons_of(number) {
-            let ray = ray_of(source, radius as f32, photon, seed);
-            launch(&scene, ray, photon, seed, &mut recorder, &mut tally);
-        }
-        (recorder.totals, tally)
-    };
-    let sums = run(2 + ORDERS, photons, batch, look);
+    let recorder = || Recorder { totals: vec![0.0; 2 + ORDERS] };
+    let ray = |photon| ray_of(source, radius as f32, photon, seed);
+    let sums = shoot(&scene, photons, seed, ray, recorder, look);
     Ok(Balance {
         photons: sums.photons(),
         absorbed: sums.estimate(0),

@@ -15,6 +15,8 @@ use tyndall::{
     tally::Tally,
 };
 
+use crate::run::{Sums, Verdict, photons_of, run};
+
 /// A photon on its way.
 #[derive(Debug)]
 pub struct Photon {
@@ -46,6 +48,8 @@ pub trait Detector {
     fn collide(&mut self, _collision: &Collision) {}
     /// A photon leaves for good. Its [`Photon::dir`] is that in which it leaves [`Photon::at_surface`].
     fn leave(&mut self, _photon: &Photon) {}
+    /// What it has seen so far: a total for each quantity.
+    fn totals(self) -> Vec<f64>;
     /// Whether a photon is to be followed no further after this many collisions.
     fn is_done(&self, _order: u32) -> bool {
         false
@@ -69,12 +73,33 @@ impl Photon {
     }
 }
 
+/// An experiment: launches photons in batches, each along the ray of its number, past a detector that starts anew with
+/// every batch, until there are `photons` or `look` has seen enough.
+pub(crate) fn shoot<D: Detector>(
+    scene: &Scene,
+    photons: u64,
+    seed: u64,
+    ray: impl Fn(u64) -> Ray + Sync,
+    detector: impl Fn() -> D + Sync,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Sums {
+    let batch = |number| {
+        let (mut detector, mut tally) = (detector(), Tally::default());
+        for photon in photons_of(number) {
+            launch(scene, ray(photon), photon, seed, &mut detector, &mut tally);
+        }
+        (detector.totals(), tally)
+    };
+    run(detector().totals().len(), photons, batch, look)
+}
+
 /// Launches the photon number `index` along `ray` and follows it to its end.
 pub fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64, detector: &mut impl Detector, tally: &mut Tally) {
     let sampler = Sampler::new(SamplerKind::Independent, (index as u32, (index >> 32) as u32), 0, seed);
     let path = Path::new(scene, ray, Wavelengths::Mono, 0.0, sampler);
     let mut photon = Photon { at_surface: ray.origin, path, travelled: 0.0 };
-    let walk = VolPath::default();
+    // There are no lights to find.
+    let (walk, mut nothing) = (VolPath::default(), Lanes::ZERO);
     tally.paths += 1;
     loop {
         let (weight, from, order) = (photon.weight(), photon.path.ray.origin, photon.order());
@@ -93,7 +118,7 @@ pub fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64, detector: &mut imp
             }
             _ => detector.collide(&Collision { p, weight, absorbed: weight, travelled: photon.travelled, order }),
         }
-        let status = photon.path.respond(event, scene, &walk, &mut Lanes::ZERO.clone(), tally);
+        let status = photon.path.respond(event, scene, &walk, &mut nothing, tally);
         if status == Status::Done || detector.is_done(photon.order()) {
             return;
         }

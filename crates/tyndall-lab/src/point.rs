@@ -10,11 +10,10 @@ use glam::DVec3;
 use tyndall::{
     math::{Ray, Vec3},
     sampling::rng::Rng,
-    tally::Tally,
 };
 
-use crate::photon::{Collision, Detector, launch};
-use crate::run::{Batch, Estimate, Sums, Verdict, photons_of, run};
+use crate::photon::{Collision, Detector, shoot};
+use crate::run::{Estimate, Sums, Verdict};
 use crate::world::{SetupError, Substance, World};
 
 /// The fluence of a shell.
@@ -43,6 +42,10 @@ impl Detector for Recorder<'_> {
         let last = self.totals.len() - 2;
         self.totals[last] += c.weight;
         self.totals[last + 1] += c.weight * r * r;
+    }
+
+    fn totals(self) -> Vec<f64> {
+        self.totals
     }
 }
 
@@ -77,16 +80,9 @@ pub fn fluence(
         s > 0.0
     })?;
     let scene = World::default().build(substance, DVec3::ZERO)?;
-    let batch = |number| -> Batch {
-        let mut recorder = Recorder { radii, totals: vec![0.0; radii.len() + 1] };
-        let mut tally = Tally::default();
-        for photon in photons_of(number) {
-            let ray = Ray::new(Vec3::ZERO, any_direction(photon, seed));
-            launch(&scene, ray, photon, seed, &mut recorder, &mut tally);
-        }
-        (recorder.totals, tally)
-    };
-    let sums = run(radii.len() + 1, photons, batch, look);
+    let recorder = || Recorder { radii, totals: vec![0.0; radii.len() + 1] };
+    let ray = |photon| Ray::new(Vec3::ZERO, any_direction(photon, seed));
+    let sums = shoot(&scene, photons, seed, ray, recorder, look);
     let by_sigma = 1.0 / substance.sigma_t();
     let shell = |(i, w): (usize, &[f64])| Shell {
         inner: w[0],

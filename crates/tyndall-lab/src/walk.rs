@@ -9,10 +9,9 @@
 
 use glam::DVec3;
 use tyndall::math::{Ray, Vec3};
-use tyndall::tally::Tally;
 
-use crate::photon::{Collision, Detector, launch};
-use crate::run::{Batch, Estimate, Sums, Verdict, photons_of, run};
+use crate::photon::{Collision, Detector, shoot};
+use crate::run::{Estimate, Sums, Verdict};
 use crate::world::{SetupError, Substance, World};
 
 /// Moments of the place after a number of flights, in mean free paths.
@@ -45,6 +44,10 @@ impl Detector for Recorder<'_> {
         }
     }
 
+    fn totals(self) -> Vec<f64> {
+        self.totals
+    }
+
     fn is_done(&self, order: u32) -> bool {
         self.flights.iter().all(|n| *n <= order)
     }
@@ -65,15 +68,8 @@ pub fn moments(
         return Err(SetupError::Missing("number of flights"));
     }
     let scene = World::default().build(&Substance::of_albedo(1.0, g), DVec3::ZERO)?;
-    let batch = |number| -> Batch {
-        let mut recorder = Recorder { flights, totals: vec![0.0; 3 * flights.len()] };
-        let mut tally = Tally::default();
-        for photon in photons_of(number) {
-            launch(&scene, Ray::new(Vec3::ZERO, Vec3::Z), photon, seed, &mut recorder, &mut tally);
-        }
-        (recorder.totals, tally)
-    };
-    let sums = run(3 * flights.len(), photons, batch, look);
+    let recorder = || Recorder { flights, totals: vec![0.0; 3 * flights.len()] };
+    let sums = shoot(&scene, photons, seed, |_| Ray::new(Vec3::ZERO, Vec3::Z), recorder, look);
     let moment = |i: usize, n: u32| Moments {
         flights: n,
         photons: sums.photons(),

@@ -7,7 +7,7 @@ use tyndall::{
     math::{Vec2, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
-    shape::{Disk, DiskMapping, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere},
+    shape::{Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere},
 };
 
 use super::{Builder, material_id, medium_id};
@@ -125,9 +125,8 @@ impl<'a> Builder<'a> {
             ShapeKind::Sphere { radius } => {
                 vec![builder.add_sphere(Sphere::new(Vec3::ZERO, *radius as f32), &transform, reversed)]
             }
-            ShapeKind::Disk { height, radius, inner_radius, u_is_radius } => {
-                let mapping = if *u_is_radius { DiskMapping::OutwardAzimuth } else { DiskMapping::AzimuthInward };
-                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32).mapped(mapping);
+            ShapeKind::Disk { height, radius, inner_radius, mapping } => {
+                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32).mapped(*mapping);
                 vec![builder.add_disk(disk, &transform, reversed)]
             }
             ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],

@@ -1,6 +1,7 @@
 //! Shapes, groups and instances. Geometry stays in the shape's own space.
 
 use glam::DMat4;
+use tyndall::shape::DiskMapping;
 
 use super::{AreaLightDesc, FileRef, GroupId, MaterialId, MediumInterface, Span, Spanned, Varying};
 
@@ -45,8 +46,8 @@ pub enum ShapeKind {
         radius: f64,
         /// Inner radius: 0 for a full disk.
         inner_radius: f64,
-        /// Whether u is the radius and v the azimuth (Mitsuba), or u the azimuth and v the way in from the rim (pbrt).
-        u_is_radius: bool,
+        /// Its texture coordinates.
+        mapping: DiskMapping,
     },
     /// The square [-1, 1]² at z = 0, normal +z.
     Rectangle,

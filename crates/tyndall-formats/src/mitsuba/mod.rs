@@ -6,12 +6,9 @@
 //!              $parameters      parameters, references
 //! ```
 //!
-//! What is read, with Mitsuba's defaults: sensors `perspective`, `thinlens`, `orthographic`, `radiancemeter`,
-//! `irradiancemeter`, `batch`, film `hdrfilm` and the filters, all samplers; all integrators but `stokes`; shapes `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `shapegroup`,
-//! `instance`; bsdfs `diffuse`, `twosided`, `dielectric`, `roughdielectric`, `thindielectric`, `conductor`,
-//! `roughconductor`, `null`; emitters `area`, `constant`, `envmap`, `point`, `spot`, `directional`; medium `homogeneous` with `isotropic` and `hg`. Any other
-//! word is an error, with the nearest word that is known; a word that Mitsuba has and tyndall does not have yet is said to
-//! be that. Words that change nothing here are kept in [`SceneDesc::ignored`].
+//! What is read, with Mitsuba's defaults, stands in the book's table of words (docs/src/words.md), which a test makes. Any
+//! other word is an error, with the nearest word that is known; a word that Mitsuba has and tyndall does not have yet is said
+//! to be that. Words that change nothing here are kept in [`SceneDesc::ignored`].
 //!
 //! Where Mitsuba's conventions differ from pbrt's, the description says which holds: see [`crate::desc`]. A plain number
 //! for a light is white light, as an RGB triple is; for anything else it is the same at every wavelength.

@@ -1,6 +1,7 @@
 //! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `serialized`, and `shapegroup` with `instance`.
 
 use glam::{DMat4, DVec3};
+use tyndall::shape::DiskMapping;
 
 use super::object::Object;
 use super::scene::Builder;
@@ -82,7 +83,9 @@ impl<'t> Builder<'t> {
                 let radius = object.float("radius", |radius| radius > 0.0, "greater than 0", report);
                 ShapeKind::Sphere { radius: radius.map_or(1.0, |radius| radius.value) }
             }
-            "disk" => ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, u_is_radius: true },
+            "disk" => {
+                ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, mapping: DiskMapping::OutwardAzimuth }
+            }
             "rectangle" | "cube" => {
                 object.ignore(&["face_normals"], "its faces are flat", report);
                 if plugin == "cube" { ShapeKind::Cube } else { ShapeKind::Rectangle }

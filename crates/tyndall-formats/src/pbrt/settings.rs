@@ -75,8 +75,8 @@ impl Settings {
 
 /// Options of pbrt that change nothing here.
 const IGNORED_OPTIONS: [(&str, &str); 7] = [
-    ("disabletexturefiltering", "there are no textures to filter"),
-    ("displacementedgescale", "there is no displacement"),
+    ("disabletexturefiltering", "textures are looked up at points: the samples of a pixel filter them"),
+    ("displacementedgescale", "only displaced meshes read it, which are not known yet"),
     ("msereferenceimage", "`tyndall compare` takes the difference of two images"),
     ("msereferenceout", "`tyndall compare` takes the difference of two images"),
     ("pixelstats", "statistics are asked for on the command line"),

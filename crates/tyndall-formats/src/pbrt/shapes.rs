@@ -1,5 +1,7 @@
 //! `Shape`.
 
+use tyndall::shape::DiskMapping;
+
 use super::Reader;
 use super::param::ParamType;
 use super::params::Params;
@@ -107,7 +109,7 @@ fn disk(p: &mut Params) -> ShapeKind {
         p.error(SceneError::at(inner.span, "\"innerradius\" must be less than \"radius\""));
     }
     p.later_unless("phimax", 360.0);
-    ShapeKind::Disk { height, radius, inner_radius: inner.value, u_is_radius: false }
+    ShapeKind::Disk { height, radius, inner_radius: inner.value, mapping: DiskMapping::AzimuthInward }
 }
 
 /// What triangles and patches have in common: corners, and one normal and one coordinate for each or none.

@@ -19,7 +19,7 @@ pub(super) struct Layout {
     order: [Range<usize>; 2],
     length: [Range<usize>; 2],
     depth: Range<usize>,
-    pub(super) quantities: usize,
+    quantities: usize,
 }
 
 /// The first quantities: what leaves upwards and downwards, of each all, the unscattered and the scattered.
@@ -105,7 +105,7 @@ pub(super) struct Recorder<'a> {
     layout: &'a Layout,
     /// Depths of the lower ends of the layers [length].
     ends: Vec<f64>,
-    pub(super) totals: Vec<f64>,
+    totals: Vec<f64>,
 }
 
 impl<'a> Recorder<'a> {
@@ -133,6 +133,10 @@ impl Detector for Recorder<'_> {
             let sigma_t = self.setup.layers[layer].substance.sigma_t();
             self.add(&self.layout.depth, self.setup.bins.depths.find(depth), c.weight / sigma_t);
         }
+    }
+
+    fn totals(self) -> Vec<f64> {
+        self.totals
     }
 
     fn leave(&mut self, photon: &Photon) {

@@ -20,11 +20,10 @@ mod detector;
 use glam::DVec3;
 use tyndall::math::{Ray, Vec3};
 use tyndall::scene::Scene;
-use tyndall::tally::Tally;
 
-use crate::photon::launch;
+use crate::photon::shoot;
 use crate::point::source_stream;
-use crate::run::{Batch, Estimate, Sums, Verdict, photons_of, run};
+use crate::run::{Estimate, Sums, Verdict};
 use crate::world::{SetupError, Substance, World, within};
 use detector::{Layout, Recorder};
 
@@ -167,15 +166,8 @@ pub fn measure(
     setup.check()?;
     let scene = setup.scene()?;
     let layout = Layout::new(setup);
-    let batch = |number| -> Batch {
-        let mut recorder = Recorder::new(setup, &layout);
-        let mut tally = Tally::default();
-        for photon in photons_of(number) {
-            launch(&scene, setup.ray(photon, seed), photon, seed, &mut recorder, &mut tally);
-        }
-        (recorder.totals, tally)
-    };
-    let sums = run(layout.quantities, photons, batch, look);
+    let recorder = || Recorder::new(setup, &layout);
+    let sums = shoot(&scene, photons, seed, |photon| setup.ray(photon, seed), recorder, look);
     Ok(layout.read(setup, &sums))
 }
 

@@ -53,9 +53,7 @@ impl Skin {
             Self::Between { eta, .. } => material.bsdf_between(eta, &hit.into(), wavelengths),
         }
     }
-}
 
-impl Skin {
     /// What of the light along `dir` passes straight.
     #[inline]
     pub(crate) fn openness(self, scene: &Scene, hit: &Interaction, dir: Vec3) -> Openness {

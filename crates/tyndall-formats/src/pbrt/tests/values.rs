@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
+use tyndall::shape::DiskMapping;
 
 use super::{parse, scene, world};
 use crate::desc::{
@@ -39,7 +40,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
     assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 1.0 });
     assert_eq!(
         desc.shapes[1].kind,
-        ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, u_is_radius: false }
+        ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, mapping: DiskMapping::AzimuthInward }
     );
     // The material of shapes before any Material comes first.
     let [default, diffuse, conductor, dielectric, interface, pane, leaf] = &desc.materials[..] else { panic!() };
