@@ -37,7 +37,7 @@ pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, Ligh
 pub use material::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind};
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
-pub use shape::{GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
+pub use shape::{DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 pub use spectrum::SpectrumDesc;
 pub use texture::{
     Board, Encoding, ImageDesc, MappingDesc, NoiseDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind,
