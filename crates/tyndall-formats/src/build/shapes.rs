@@ -185,7 +185,11 @@ impl<'a> Builder<'a> {
     /// A body with a priority must be something that light can enter, that does not shine, and whose outside is left to others.
     fn check_priority(&mut self, desc: &ShapeDesc) -> Option<()> {
         let Some(priority) = desc.priority else { return Some(()) };
-        let kind = self.desc.material(desc.material.value).map(|material| &material.kind);
+        let kind = |id| self.desc.material(id).map(|material| &material.kind);
+        let kind = match kind(desc.material.value) {
+            Some(MaterialKind::Embossed { of, .. }) => kind(of.value),
+            even => even,
+        };
         if !matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::Interface) | None) {
             return self.fail(
                 SceneError::at(priority.span, "only a body that light can enter has a priority")
@@ -292,7 +296,7 @@ impl<'a> Builder<'a> {
         displacement: &DisplacementDesc,
         transform: &Transform,
     ) -> Option<Result<TriangleMesh, MeshError>> {
-        let texture = self.texture(&displacement.height, Measure::Coefficient)?;
+        let texture = self.texture(&displacement.height, Measure::Height)?;
         // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
         let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO });
         let length = |a: Vec3, b: Vec3| {

@@ -9,6 +9,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::{
     ShapeError,
+    derivatives::Local,
     instance::{least_stretch, outward},
     interaction::Point,
     part::{Turn, turns},
@@ -116,6 +117,16 @@ impl Cylinder {
             uv: Vec2::new((turns(round) / self.turn.turns()) as f32, local.z as f32),
             dpdu: matrix * round.perp().extend(0.0) * self.turn.radians(),
         }
+    }
+
+    /// By the parameters, at a point of the space that holds it.
+    pub(super) fn derivatives(&self, p: DVec3) -> Local {
+        let local = self.inverse * (p - self.base.as_dvec3());
+        let round = local.truncate().normalize_or(DVec2::X);
+        let along = round.perp().extend(0.0) * self.turn.radians();
+        let cotangent = self.inverse.transpose();
+        let dn = [cotangent * along, DVec3::ZERO];
+        Local::of_normal([self.matrix() * along, self.axis.as_dvec3()], cotangent * round.extend(0.0), dn)
     }
 
     /// A lower bound on the distance [length] from `p` to the whole cylinder: the distance itself if the cylinder is

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     ShapeError,
+    derivatives::Local,
     instance::outward,
     interaction::Point,
     part::{Turn, turns},
@@ -135,6 +136,20 @@ impl Disk {
         let n = a.cross(b);
         let square = n.length_squared();
         (b.cross(n).dot(v) / square, n.cross(a).dot(v) / square)
+    }
+
+    /// By the parameters, at a point of the space that holds it.
+    pub(super) fn derivatives(&self, p: DVec3) -> Local {
+        let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
+        let (x, y) = self.coordinates(p - self.centre.as_dvec3());
+        let r = x.hypot(y);
+        let (cos, sin) = if r > 0.0 { (x / r, y / r) } else { (1.0, 0.0) };
+        let (out, round) = (a * cos + b * sin, (b * cos - a * sin) * (r * self.turn.radians()));
+        let dp = match self.mapping {
+            DiskMapping::AzimuthInward => [round, out * (f64::from(self.inner) - 1.0)],
+            DiskMapping::OutwardAzimuth => [out, round],
+        };
+        Local { dp, dn: [DVec3::ZERO; 2] }
     }
 
     pub(super) fn point(&self, ray: &Ray, t: f32) -> Point {

@@ -9,6 +9,7 @@ use glam::{DMat3, DVec3};
 
 use super::{
     ShapeError,
+    derivatives::Local,
     instance::{Placement, outward},
     interaction::Point,
     part::{SpherePart, turns},
@@ -166,6 +167,25 @@ impl Sphere {
             uv,
             dpdu: self.axes.transpose() * dpdu,
         }
+    }
+
+    /// By the parameters, at a point of the space that holds it.
+    pub(super) fn derivatives(&self, p: DVec3) -> Local {
+        let place = self.placement.as_ref();
+        let local = place.map_or(p, |placement| placement.local_point(p)) - self.centre.as_dvec3();
+        let n = (self.axes * local).normalize_or(DVec3::Z);
+        let SpherePart { z, turn } = self.part;
+        let [south, north] = z.map(f64::acos);
+        let rho = n.truncate().length();
+        let [cos, sin] = if rho > 0.0 { [n.x / rho, n.y / rho] } else { [1.0, 0.0] };
+        let du = DVec3::new(-n.y, n.x, 0.0) * turn.radians();
+        let dv = DVec3::new(n.z * cos, n.z * sin, -rho) * (north - south);
+        let dn = [du, dv].map(|d| self.axes.transpose() * d);
+        let local = Local { dp: dn.map(|d| d * f64::from(self.radius)), dn };
+        place.map_or(local, |placement| {
+            let normal = placement.map().matrix3.inverse().transpose() * (self.axes.transpose() * n);
+            local.placed(&placement.map(), normal.normalize())
+        })
     }
 
     /// `(u, v)` of a direction from the centre, and the derivative of the point by `u`.
