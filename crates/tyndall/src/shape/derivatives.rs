@@ -171,7 +171,7 @@ mod tests {
                     };
                     let duv = c.uv - b.uv;
                     // Grazing rays, and the seam of u, are left out.
-                    if (c.p - b.p).length() > 0.06 || duv.length() > 0.1 {
+                    if (c.p - b.p).length() > 0.06 || duv.length() > 0.03 {
                         continue;
                     }
                     compared += 1;
