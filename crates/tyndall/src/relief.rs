@@ -12,11 +12,11 @@
 //! | | Mitsuba 3.9 | pbrt-v4 |
 //! |---|---|---|
 //! | tangents | without their parts along `n` | as they are, with `h ∂n/∂u` added; on meshes with normals `∂p/∂u` at right angles to `n`, and `n × ∂p/∂u` |
-//! | `n′` faces away from the viewer | its tangential part is turned round (Schüßler et al. 2017), unless the file says no: then the point is black | the surface is shaded as if it were even |
+//! | `n′` faces away from the viewer | its tangential part is turned round (Schüßler et al. 2017), unless the file says no: then the point is black | the BSDF is seen from its other side; that of a boundary as if it were even |
 //! | light through the relief | times `2 / (1 + √(1 + α² tan² θ_i))`, `α² = min(tan² θ_n′ / 8, 1)`, θ from `n` (Estevez, Lecocq and Stellmann 2019), unless the file says no | unchanged |
-//! | a reflection that would go into the surface | black | black, or by the even surface if it is a mirror's |
+//! | a direction on different sides of `n` and `n′` | black | as the BSDF says; at a boundary black, or by the even surface if it is clear |
 //!
-//! Where the surface itself is shaded by its true normal (see [`crate::path::Vertex::surface`]) there is no relief.
+//! Where a boundary is shaded by its true normal anyway (see [`crate::path::Vertex::surface`]) it has no relief.
 
 use crate::{
     math::{Frame, Vec3},

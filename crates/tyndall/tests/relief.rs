@@ -71,7 +71,8 @@ fn integrators() -> [(&'static str, Box<dyn Integrator>); 2] {
 
 /// ρ = 0.6 leaning by n′ = (0.6, 0.8) towards light of irradiance π from l = (1/2, √3/2): `L = ρ n′·l G`, with
 /// n′·l = 0.3 + 0.4√3 and, in Mitsuba, α² = (0.6/0.8)²/8, `G = 2/(1 + √(1 + α²/3))`. From low behind the lean, the normal
-/// faces away from the viewer: in Mitsuba it is turned to n′ = (−0.6, 0.8).
+/// faces away from the viewer: in Mitsuba it is turned to n′ = (−0.6, 0.8); in pbrt the viewer sees its other side, which is
+/// dark.
 #[test]
 fn a_leaning_surface_is_lit_by_its_own_cosine() {
     let root = 3f64.sqrt();
@@ -84,8 +85,7 @@ fn a_leaning_surface_is_lit_by_its_own_cosine() {
         (Rule::Pbrt, high, 0.3 + 0.4 * root),
         (MITSUBA, low, (0.4 * root - 0.3) * shadowing),
         (PLAIN, low, 0.0),
-        // The even surface: l·y.
-        (Rule::Pbrt, low, 0.5 * root),
+        (Rule::Pbrt, low, 0.0),
     ];
     for (rule, eye, expected) in cases {
         let mut world = World::seen(eye, Vec3::ZERO);
@@ -171,7 +171,7 @@ fn ball(material: Material, map: Map, rule: Rule) -> (Scene, MaterialId) {
 }
 
 /// The weight of a direction drawn is `f |cos| / pdf` as light sampling evaluates them, the shadowing of the relief
-/// included; and no direction is drawn that crosses the true surface where the BSDF reflects.
+/// included; and at a boundary no direction crosses the true surface where the BSDF reflects.
 #[test]
 fn weights_are_values_over_densities_on_a_relief() {
     let metal = Material::Conductor {
@@ -205,7 +205,9 @@ fn weights_are_values_over_densities_on_a_relief() {
                     assert!((found - expected).abs() < 2e-3 * expected.max(1e-3), "{rule:?}: {found} {expected}");
                     assert!((scattered.pdf / pdf - 1.0).abs() < 2e-3, "{rule:?}: {pdf} {}", scattered.pdf);
                     let crosses = ray.dir.dot(hit.ng) * scattered.ray.dir.dot(hit.ng) > 0.0;
-                    assert_eq!(crosses, scattered.crossed, "{rule:?}");
+                    if even.index().is_some() {
+                        assert_eq!(crosses, scattered.crossed, "{rule:?}");
+                    }
                     drawn += 1;
                 }
             }
