@@ -54,7 +54,7 @@ fn what_pbrt_knows_and_this_reader_does_not_yet_is_said_to_be_so() {
     check(&[
         (
             "Shape \"curve\" \"point3 P\" [ 0 0 0 ] \"float width0\" 0.1",
-            "1:18 the shape \"curve\" is not supported yet [supported are \"sphere\", \"disk\", \"trianglemesh\", \"bilinearmesh\", \"plymesh\"]",
+            "1:18 the shape \"curve\" is not supported yet [supported are \"sphere\", \"disk\", \"cylinder\", \"trianglemesh\", \"bilinearmesh\", \"plymesh\", \"loopsubdiv\"]",
         ),
         (
             "Material \"hair\" \"float eumelanin\" 1.3",
