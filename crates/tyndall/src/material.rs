@@ -5,6 +5,7 @@ use crate::{
         Bsdf, Plastic, Sides,
         microfacet::{Distribution, Shadowing},
     },
+    relief::Relief,
     scene::MaterialId,
     spectrum::{Lanes, Sampled, Wavelengths, glass::Glass},
     texture::{Texture, TexturePoint},
@@ -92,6 +93,13 @@ pub enum Material {
         outside: MaterialId,
         /// On the other side.
         inside: MaterialId,
+    },
+    /// Another material, shaded as if the surface were uneven.
+    Embossed {
+        /// It; neither this one nor one that is embossed is part of it.
+        of: MaterialId,
+        /// How uneven.
+        relief: Box<Relief>,
     },
 }
 
@@ -197,7 +205,7 @@ impl Material {
                     .on(*sides)
             }
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
-            Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } => Bsdf::Null,
+            Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } | Self::Embossed { .. } => Bsdf::Null,
         }
     }
 

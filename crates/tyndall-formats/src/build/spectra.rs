@@ -25,6 +25,8 @@ pub(super) enum Measure {
     /// An index of refraction, at least 0. It filters no light: in `rgb` mode its measured values are seen under equal
     /// energy, as Mitsuba sees those of its metals.
     Index,
+    /// A height: any number.
+    Height,
 }
 
 /// Values at wavelengths [nm].
@@ -127,7 +129,8 @@ impl Builder<'_> {
 
     fn check(&mut self, values: &[f64], measure: Measure, span: Span) -> Option<()> {
         let most = if measure == Measure::Share { 1.0 } else { f64::from(f32::MAX) };
-        match values.iter().find(|v| !(0.0..=most).contains(*v)) {
+        let least = if measure == Measure::Height { -most } else { 0.0 };
+        match values.iter().find(|v| !(least..=most).contains(*v)) {
             None => Some(()),
             Some(v) if measure == Measure::Share => self.fail(
                 SceneError::at(span, format!("{v} is not between 0 and 1"))

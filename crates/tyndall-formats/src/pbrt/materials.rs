@@ -2,13 +2,15 @@
 
 use std::borrow::Cow;
 
+use tyndall::relief::Rule;
+
 use super::Reader;
 use super::params::Params;
 use super::parser::Statement;
 use super::textures::Textures;
 use crate::desc::{
-    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
-    SpectrumDesc, Varying,
+    ConductorOptics, Encoding, ImageDesc, MappingDesc, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind,
+    ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
@@ -76,10 +78,38 @@ impl Reader {
                 return MaterialDesc { name, ..MaterialDesc::pbrt_default(span) };
             }
         };
-        p.later("displacement");
-        p.later("normalmap");
+        let map = match made {
+            MaterialKind::Mix { .. } | MaterialKind::Interface => None,
+            _ => self.relief(&mut p),
+        };
         self.finish_params(p);
-        MaterialDesc { span, name, kind: made, two_sided: true }
+        let desc = MaterialDesc { span, name, kind: made, two_sided: true };
+        let Some(map) = map else { return desc };
+        let name = desc.name.clone();
+        let even = MaterialId(self.materials.push(span, MaterialDesc { name: None, ..desc }));
+        let kind = MaterialKind::Embossed { of: Spanned::new(even, span), map, rule: Rule::Pbrt };
+        MaterialDesc { span, name, kind, two_sided: true }
+    }
+
+    /// A normal map, or else a bump map.
+    fn relief(&mut self, p: &mut Params) -> Option<ReliefMap> {
+        let heights = p.number("displacement", &self.textures, |_| true);
+        let Some(file) = p.string_opt("normalmap") else {
+            return heights.map(|texture| ReliefMap::Heights { texture, scale: 1.0 });
+        };
+        let image = ImageDesc {
+            path: Spanned::new(p.resolve(&file.value), file.span),
+            mapping: MappingDesc::UV,
+            wrap: WrapKind::Repeat,
+            smooth: true,
+            scale: 1.0,
+            invert: false,
+            by_luminance: false,
+            encoding: Encoding::Linear,
+        };
+        let id = TextureId(self.textures.list.len() as u32);
+        self.textures.list.push(TextureDesc { span: file.span, name: None, kind: TextureKind::Image(image) });
+        Some(ReliefMap::Normals(file.map(|_| Varying::Texture(id))))
     }
 }
 

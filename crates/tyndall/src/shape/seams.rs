@@ -16,7 +16,8 @@ pub struct Seams {
 }
 
 impl Geometry {
-    /// The edges of what these objects are together. A sphere has none and is closed; a disk has one, which is open.
+    /// The edges of what these objects are together. A sphere has none and is closed, unless a part of it is missing; a
+    /// disk has one and a cylinder two, which are open.
     pub fn seams(&self, objects: &[ObjectId]) -> Seams {
         let mut edges = Vec::new();
         let rims = self.for_each_edge(objects, |edge| edges.push(edge));
@@ -46,8 +47,9 @@ impl Geometry {
         let mut rims = 0;
         for &object in objects {
             match self.shape(object) {
-                Shape::Sphere(_) => {}
+                Shape::Sphere(sphere) => rims += usize::from(!sphere.part.is_whole()),
                 Shape::Disk(_) => rims += 1,
+                Shape::Cylinder(_) => rims += 2,
                 Shape::Mesh(mesh) => mesh_edges(mesh).for_each(&mut visit),
                 Shape::Patch(patch) => patch_edges(patch).for_each(&mut visit),
             }
