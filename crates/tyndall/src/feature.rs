@@ -104,7 +104,7 @@ impl<'a> FirstHit<'a> {
     fn albedo(&self, hit: &Interaction, wavelengths: &Wavelengths, sampler: &mut Sampler) -> [f32; 3] {
         let bsdf = match self.scene.material(hit) {
             crate::material::Material::Null => return [0.0; 3],
-            material => material.bsdf(&hit.into(), wavelengths, 0),
+            material => material.bsdf(&hit.into(), wavelengths, 0).seeded(|| sampler.rng.next_u32()),
         };
         let Vertex::Surface { bsdf, wo, .. } = Vertex::surface(*hit, bsdf, self.ray.ray.dir) else { return [0.0; 3] };
         let u = sampler.next_2d();

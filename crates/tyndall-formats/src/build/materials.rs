@@ -5,7 +5,7 @@ use tyndall::{
         Sides, internal_reflectance,
         microfacet::{Distribution, Shadowing},
     },
-    material::{Index, Material, Metal, Roughness},
+    material::{CoatedBase, CoatedMaterial, Index, Material, Metal, Roughness},
     spectrum::{Spectrum, glass::Glass},
     texture::Texture,
 };
@@ -13,8 +13,8 @@ use tyndall::{
 use super::{Builder, made::parts, material_id, spectra::Measure};
 use crate::{
     desc::{
-        ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
-        SpectrumDesc, Varying,
+        BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc,
+        ShadowingKind, SpectrumDesc, Varying,
     },
     error::SceneError,
     source::Spanned,
@@ -94,6 +94,7 @@ impl Builder<'_> {
                     sides,
                 })
             }
+            MaterialKind::Coated(coated) => self.coated(coated).map(|coated| Material::Coated(Box::new(coated))),
             MaterialKind::Interface => Some(Material::Null),
             MaterialKind::Mix { of, amount } => Some(Material::Mix {
                 of: [material_id(of[0].value), material_id(of[1].value)],
@@ -107,6 +108,25 @@ impl Builder<'_> {
                 Some(Material::TwoFaced { outside: material_id(outside.value), inside: material_id(inside.value) })
             }
         }
+    }
+
+    fn coated(&mut self, desc: &CoatedDesc) -> Option<CoatedMaterial> {
+        let base = match &desc.base {
+            BaseDesc::Diffuse(reflectance) => CoatedBase::Diffuse(self.texture(reflectance, Measure::Share)?),
+            BaseDesc::Conductor { optics, roughness } => {
+                CoatedBase::Metal { metal: self.metal(optics)?, alpha: self.roughness(roughness)? }
+            }
+        };
+        Some(CoatedMaterial {
+            eta: self.index(&desc.eta)?,
+            alpha: self.roughness(&desc.roughness)?,
+            thickness: self.texture(&desc.thickness, Measure::Coefficient)?,
+            albedo: self.texture(&desc.albedo, Measure::Share)?,
+            g: self.texture(&desc.g, Measure::Number)?,
+            base,
+            max_depth: desc.max_depth,
+            walks: desc.walks,
+        })
     }
 
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {

@@ -164,14 +164,10 @@ impl Bsdf {
         }
     }
 
-    /// A metal with this reflectance in [0, 1] at normal incidence: index 1 and `k = 2√r / √(1 − r)`, `r ≤ 0.9999`
-    /// (pbrt's parameter `reflectance`).
+    /// A metal with this reflectance in [0, 1] at normal incidence: [`index_of_reflectance`].
     pub fn conductor_of_reflectance(reflectance: Lanes, alpha_x: f32, alpha_y: f32) -> Self {
-        let k = reflectance.map(|r| {
-            let r = r.clamp(0.0, 0.9999);
-            2.0 * r.sqrt() / (1.0 - r).sqrt()
-        });
-        Self::conductor(Lanes::ONE, k, alpha_x, alpha_y)
+        let [eta, k] = index_of_reflectance(reflectance);
+        Self::conductor(eta, k, alpha_x, alpha_y)
     }
 
     /// The same model with every reflection multiplied by `reflectance` and every transmission by `transmittance`
@@ -315,6 +311,16 @@ impl Bsdf {
             Self::Null => true,
         }
     }
+}
+
+/// A complex index \[1\] with this reflectance at normal incidence: 1 and `k = 2√r / √(1 − r)`, `r` in [0, 0.9999] (pbrt's
+/// parameter `reflectance`).
+pub fn index_of_reflectance(reflectance: Lanes) -> [Lanes; 2] {
+    let k = reflectance.map(|r| {
+        let r = r.clamp(0.0, 0.9999);
+        2.0 * r.sqrt() / (1.0 - r).sqrt()
+    });
+    [Lanes::ONE, k]
 }
 
 /// The unscattered direction behind a surface that is not there.
