@@ -37,8 +37,8 @@ impl Geometry {
     /// Told without memory: edges are hashed to 128 bits and added, those that run the other way subtracted.
     pub fn is_closed(&self, objects: &[ObjectId]) -> bool {
         let sums = objects.iter().map(|&object| match self.shape(object) {
-            Shape::Sphere(_) => Some(0),
-            Shape::Disk(_) => None,
+            Shape::Sphere(sphere) => sphere.part.is_whole().then_some(0),
+            Shape::Disk(_) | Shape::Cylinder(_) => None,
             Shape::Mesh(mesh) => {
                 let faces = (0..mesh.indices.len() as u32).into_par_iter();
                 let faces = faces.map(|prim| sum(face_edges(mesh.triangle(prim), mesh.reversed)));
