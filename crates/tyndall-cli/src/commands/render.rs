@@ -18,7 +18,7 @@ use crate::{
     integrators::integrator,
     interrupt,
     load::{Loaded, load},
-    outputs::{Outputs, write_text},
+    outputs::{Outputs, command_line, write_text},
     progress::Progress,
     report::{Course, End, Startup, Statistics, samples_per_pixel},
     tev::Tev,
@@ -187,12 +187,6 @@ pub(crate) fn color_mode(name: ColorName) -> ColorMode {
         ColorName::Mono => ColorMode::Mono,
         ColorName::Spectral => ColorMode::Spectral,
     }
-}
-
-/// The command line, with quotes where words hold spaces.
-fn command_line() -> String {
-    let quoted = |word: String| if word.contains(' ') { format!("'{word}'") } else { word };
-    std::env::args_os().map(|word| quoted(word.to_string_lossy().into_owned())).collect::<Vec<_>>().join(" ")
 }
 
 fn plural(n: usize) -> &'static str {
