@@ -86,9 +86,12 @@ fn media_out_of_scale(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneE
         } else {
             continue;
         };
-        let measured = matches!(words.coefficients, Coefficients::Preset { .. });
+        let measured = matches!(
+            words.coefficients,
+            Coefficients::Preset { .. } | Coefficients::PerMillimetre { .. } | Coefficients::Reflectance { .. }
+        );
         warnings.push(SceneError::warning(words.span, told).help(if measured {
-            "measured coefficients are per mm: does `Option \"string unit\"` say what a unit of the scene is?"
+            "its coefficients are per mm: does `Option \"string unit\"` say what a unit of the scene is?"
         } else {
             "coefficients are per scene unit: are they meant for a scene of this size?"
         }));

@@ -13,9 +13,9 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 7] =
-    ["diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "mix", "interface"];
-const LATER_MATERIALS: [&str; 5] = ["coatedconductor", "coateddiffuse", "hair", "measured", "subsurface"];
+const MATERIALS: [&str; 8] =
+    ["diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "mix", "interface", "subsurface"];
+const LATER_MATERIALS: [&str; 4] = ["coatedconductor", "coateddiffuse", "hair", "measured"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -32,6 +32,7 @@ impl Reader {
         let p = self.params("material", &mut s, &defaults);
         let desc = self.material_of(s.whole, None, &name, p);
         let id = MaterialId(self.materials.push(s.whole, desc));
+        self.fillings.settle(id);
         self.state.now.material = Some(Spanned::new(id, s.whole));
     }
 
@@ -47,7 +48,7 @@ impl Reader {
         }
         let kind = kind.unwrap_or(Spanned::new("interface".into(), name.span));
         let desc = self.material_of(s.whole, Some(name.value.to_string()), &kind, p);
-        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(drop));
+        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(|id| r.fillings.settle(MaterialId(id))));
     }
 
     pub(super) fn use_material(&mut self, name: &Spanned<Cow<'_, str>>) {
@@ -70,6 +71,7 @@ impl Reader {
             "thindielectric" => thin_dielectric(&mut p),
             "diffusetransmission" => diffuse_transmission(&mut p, &self.textures),
             "mix" => self.mix(&mut p),
+            "subsurface" => self.subsurface(span, &mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -153,7 +155,7 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
     }
 }
 
-fn roughness(p: &mut Params, textures: &Textures) -> RoughnessDesc {
+pub(super) fn roughness(p: &mut Params, textures: &Textures) -> RoughnessDesc {
     let smooth = Spanned::new(Varying::constant(0.0), p.span);
     let both = p.amount("roughness", textures).unwrap_or(smooth);
     RoughnessDesc {
