@@ -18,7 +18,8 @@ pub struct Seams {
 }
 
 impl Geometry {
-    /// The edges of what these objects are together. A sphere has none and is closed; a disk has one, which is open.
+    /// The edges of what these objects are together. A sphere has none and is closed, unless a part of it is missing; a
+    /// disk has one and a cylinder two, which are open.
     pub fn seams(&self, objects: &[ObjectId]) -> Seams {
         let mut edges = Vec::new();
         let rims = self.for_each_edge(objects, |edge| edges.push(edge));
@@ -36,8 +37,8 @@ impl Geometry {
     /// Told without memory: edges are hashed to 128 bits and added, those that run the other way subtracted.
     pub fn is_closed(&self, objects: &[ObjectId]) -> bool {
         let sums = objects.iter().map(|&object| match self.shape(object) {
-            Shape::Sphere(_) => Some(0),
-            Shape::Disk(_) => None,
+            Shape::Sphere(sphere) => sphere.part.is_whole().then_some(0),
+            Shape::Disk(_) | Shape::Cylinder(_) => None,
             Shape::Mesh(mesh) => {
                 let faces = (0..mesh.indices.len() as u32).into_par_iter();
                 let faces = faces.map(|prim| sum(face_edges(mesh.triangle(prim), mesh.reversed)));
@@ -54,8 +55,9 @@ impl Geometry {
         let mut rims = 0;
         for &object in objects {
             match self.shape(object) {
-                Shape::Sphere(_) => {}
+                Shape::Sphere(sphere) => rims += usize::from(!sphere.part.is_whole()),
                 Shape::Disk(_) => rims += 1,
+                Shape::Cylinder(_) => rims += 2,
                 Shape::Mesh(mesh) => mesh_edges(mesh).for_each(&mut visit),
                 Shape::Patch(patch) => patch_edges(patch).for_each(&mut visit),
             }
