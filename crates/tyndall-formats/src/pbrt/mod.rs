@@ -16,6 +16,7 @@ mod camera;
 mod color_space;
 mod directives;
 mod film;
+mod layers;
 mod lexer;
 mod lights;
 mod materials;
