@@ -34,17 +34,11 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     interrupt::listen()?;
     let outputs = Outputs::new(&options.output, &options.input.scene, options.tone.into())?;
     outputs.check()?;
-    let loaded = load(&options.input, options.resolution, options.color.map(color_mode))?;
+    let pool = pool(options.threads)?;
+    let loaded = pool.install(|| load(&options.input, options.resolution, options.color.map(color_mode)))?;
     loaded.warn();
     let settings = settings(options, &loaded)?;
-    let job = Job {
-        options,
-        loaded: &loaded,
-        settings,
-        outputs: &outputs,
-        pool: pool(options.threads)?,
-        start: Instant::now(),
-    };
+    let job = Job { options, loaded: &loaded, settings, outputs: &outputs, pool, start: Instant::now() };
 
     let cpu = ProcessTime::now();
     let rendering = job.render();
