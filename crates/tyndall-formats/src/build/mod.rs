@@ -5,6 +5,7 @@ mod lights;
 pub(crate) mod made;
 mod materials;
 mod media;
+mod meshes;
 mod shapes;
 mod spectra;
 mod textures;
@@ -23,6 +24,7 @@ use crate::{
     source::{SourceMap, Span},
 };
 use made::Made;
+use meshes::Meshes;
 use spectra::Measure;
 use textures::Pictures;
 
@@ -46,6 +48,7 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    meshes: Meshes,
     made: Made,
 }
 
@@ -56,6 +59,7 @@ impl<'a> Builder<'a> {
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            meshes: Meshes::new(desc),
             made: Made::new(desc.materials.len()),
         }
     }
@@ -63,6 +67,12 @@ impl<'a> Builder<'a> {
 
 impl Builder<'_> {
     fn scene(&mut self, color: ColorMode) -> Option<Scene> {
+        if self.desc.film.color() == ColorMode::Spectral && color != ColorMode::Spectral {
+            return self.fail(
+                SceneError::at(self.desc.film.span, "this film records wavelengths, and the render has colours only")
+                    .help("render it with --color spectral"),
+            );
+        }
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
         let shapes = self.shapes();
