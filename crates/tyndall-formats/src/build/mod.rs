@@ -5,6 +5,7 @@ mod lights;
 pub(crate) mod made;
 mod materials;
 mod media;
+mod painted;
 mod shapes;
 mod spectra;
 mod textures;
@@ -13,9 +14,17 @@ mod textures;
 mod tests;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DMat4;
-use tyndall::{film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode, texture::Texture};
+use tyndall::{
+    film::Crop,
+    light::LightTable,
+    math::Transform,
+    scene::Scene,
+    spectrum::ColorMode,
+    texture::{Texture, attribute::Painted},
+};
 
 use crate::{
     desc::{FilmDesc, MaterialId, MediumId, SceneDesc, TextureId},
@@ -46,6 +55,8 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    /// Colours of meshes: of vertices, and of faces.
+    painted: [Arc<Painted>; 2],
     made: Made,
 }
 
@@ -56,6 +67,7 @@ impl<'a> Builder<'a> {
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            painted: [Arc::default(), Arc::default()],
             made: Made::new(desc.materials.len()),
         }
     }
@@ -63,9 +75,10 @@ impl<'a> Builder<'a> {
 
 impl Builder<'_> {
     fn scene(&mut self, color: ColorMode) -> Option<Scene> {
+        // First the shapes: textures may show the colours of meshes.
+        let shapes = self.shapes();
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
-        let shapes = self.shapes();
         let lights = self.lights();
         let camera = shapes.as_ref().and_then(|shapes| self.camera(shapes));
         let mut materials = materials?;

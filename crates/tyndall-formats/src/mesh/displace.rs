@@ -42,7 +42,7 @@ pub fn displace(
         *p += n * height(*p, *uv);
     }
     let normals = Some(mean_normals(&positions, &indices));
-    TriangleMesh { positions, indices, normals, uvs: Some(uvs) }.checked()
+    TriangleMesh { positions, indices, normals, uvs: Some(uvs), ..TriangleMesh::default() }.checked()
 }
 
 /// Vertices in the making.
@@ -130,6 +130,7 @@ mod tests {
             indices: vec![[0, 1, 2], [0, 2, 3]],
             normals: None,
             uvs: Some(vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]),
+            ..TriangleMesh::default()
         }
     }
 
