@@ -105,7 +105,7 @@ impl<'a> FirstHit<'a> {
         let (material, relief) = self.scene.meet(hit, self.ray.ray.dir, || sampler.next_1d());
         let bsdf = match material {
             crate::material::Material::Null => return [0.0; 3],
-            material => material.bsdf(&hit.into(), wavelengths, 0),
+            material => material.bsdf(&hit.into(), wavelengths, 0).seeded(|| sampler.rng.next_u32()),
         };
         let vertex = Vertex::met(self.scene, *hit, bsdf, self.ray.ray.dir, relief);
         let Vertex::Surface { bsdf, wo, .. } = vertex else { return [0.0; 3] };

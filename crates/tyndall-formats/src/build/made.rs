@@ -57,6 +57,7 @@ pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::DiffuseTransmission { .. }
         | MaterialKind::Plastic { .. }
+        | MaterialKind::Coated(_)
         | MaterialKind::Interface => &[],
     }
 }

@@ -5,7 +5,7 @@ use tyndall::{
         Sides, internal_reflectance,
         microfacet::{Distribution, Shadowing},
     },
-    material::{Index, Material, Metal, Roughness},
+    material::{CoatedBase, CoatedMaterial, Index, Material, Metal, Roughness},
     relief::{Map, Relief},
     spectrum::{Spectrum, glass::Glass},
     texture::Texture,
@@ -14,8 +14,8 @@ use tyndall::{
 use super::{Builder, made::parts, material_id, spectra::Measure};
 use crate::{
     desc::{
-        ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc,
-        ShadowingKind, SpectrumDesc, Varying,
+        BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, ReliefMap,
+        RoughnessDesc, ShadowingKind, SpectrumDesc, Varying,
     },
     error::SceneError,
     source::{Span, Spanned},
@@ -95,6 +95,7 @@ impl Builder<'_> {
                     sides,
                 })
             }
+            MaterialKind::Coated(coated) => self.coated(coated).map(|coated| Material::Coated(Box::new(coated))),
             MaterialKind::Interface => Some(Material::Null),
             MaterialKind::Mix { of, amount } => Some(Material::Mix {
                 of: [material_id(of[0].value), material_id(of[1].value)],
@@ -114,7 +115,7 @@ impl Builder<'_> {
                 }
                 let map = match map {
                     ReliefMap::Heights { texture, scale } => {
-                        Map::Heights { texture: self.texture(texture, Measure::Height)?, scale: *scale as f32 }
+                        Map::Heights { texture: self.texture(texture, Measure::Number)?, scale: *scale as f32 }
                     }
                     ReliefMap::Normals(texture) => Map::Normals(self.texture(texture, Measure::Share)?),
                 };
@@ -130,6 +131,25 @@ impl Builder<'_> {
             MaterialKind::Embossed { .. } => Some(desc.span),
             kind => parts(kind).iter().find_map(|part| self.embossed_part(part)),
         }
+    }
+
+    fn coated(&mut self, desc: &CoatedDesc) -> Option<CoatedMaterial> {
+        let base = match &desc.base {
+            BaseDesc::Diffuse(reflectance) => CoatedBase::Diffuse(self.texture(reflectance, Measure::Share)?),
+            BaseDesc::Conductor { optics, roughness } => {
+                CoatedBase::Metal { metal: self.metal(optics)?, alpha: self.roughness(roughness)? }
+            }
+        };
+        Some(CoatedMaterial {
+            eta: self.index(&desc.eta)?,
+            alpha: self.roughness(&desc.roughness)?,
+            thickness: self.texture(&desc.thickness, Measure::Coefficient)?,
+            albedo: self.texture(&desc.albedo, Measure::Share)?,
+            g: self.texture(&desc.g, Measure::Number)?,
+            base,
+            max_depth: desc.max_depth,
+            walks: desc.walks,
+        })
     }
 
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {

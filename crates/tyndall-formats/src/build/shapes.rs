@@ -301,7 +301,7 @@ impl<'a> Builder<'a> {
         displacement: &DisplacementDesc,
         transform: &Transform,
     ) -> Option<Result<TriangleMesh, MeshError>> {
-        let texture = self.texture(&displacement.height, Measure::Height)?;
+        let texture = self.texture(&displacement.height, Measure::Number)?;
         // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
         let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO, part: None });
         let length = |a: Vec3, b: Vec3| {

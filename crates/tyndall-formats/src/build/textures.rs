@@ -170,7 +170,7 @@ impl Builder<'_> {
             scale: desc.scale as f32,
             invert: desc.invert,
             grey: if desc.by_luminance { Grey::Luminance } else { Grey::Mean },
-            least: if measure == Measure::Height { f32::MIN } else { 0.0 },
+            least: if measure == Measure::Number { f32::MIN } else { 0.0 },
             most: most(measure),
         })
     }

@@ -35,7 +35,8 @@ pub use camera::{
 };
 pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
 pub use material::{
-    ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind,
+    BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc,
+    ShadowingKind,
 };
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};

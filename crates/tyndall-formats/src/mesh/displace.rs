@@ -114,7 +114,9 @@ fn mean_normals(positions: &[Vec3], indices: &[[u32; 3]]) -> Vec<Vec3> {
     for triangle in indices {
         let [a, b, c] = triangle.map(|v| positions[v as usize].as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
-        triangle.iter().for_each(|&v| normals[v as usize] += normal);
+        for &v in triangle {
+            normals[v as usize] += normal;
+        }
     }
     normals.into_iter().map(Vec3::normalize_or_zero).collect()
 }

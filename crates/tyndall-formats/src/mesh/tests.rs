@@ -193,7 +193,7 @@ fn colours_of_vertices_and_faces_are_read() {
         property list uchar int vertex_indices\nproperty float r\nproperty float g\nproperty float b\nend_header\n\
         0 0 0 1 2 3\n1 0 0 4 5 6\n1 1 0 7 8 9\n0 1 0 255 0 1\n4 0 1 2 3 0.5 0.25 1\n3 0 1 2 0 1 0\n";
     let header = text.replace("ascii", "binary_little_endian");
-    let mut bytes = header[..header.find("end_header\n").unwrap() + 11].as_bytes().to_vec();
+    let mut bytes = header.as_bytes()[..header.find("end_header\n").unwrap() + 11].to_vec();
     let corners = [([0f32, 0.0, 0.0], [1u8, 2, 3]), ([1.0, 0.0, 0.0], [4, 5, 6]), ([1.0, 1.0, 0.0], [7, 8, 9])];
     for (p, colour) in corners.into_iter().chain([([0.0, 1.0, 0.0], [255, 0, 1])]) {
         bytes.extend(p.into_iter().flat_map(f32::to_le_bytes));

@@ -91,7 +91,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                 if let Some((_, light)) = scene.light_at(&surface) {
                     radiance += throughput * light.le(surface.ng, -ray.dir, w).lane(lane);
                 }
-                let bsdf = skin.bsdf(material, &surface, w, lane);
+                let bsdf = skin.bsdf(material, &surface, w, lane).seeded(|| sampler.rng.next_u32());
                 if matches!(bsdf, Bsdf::Null) {
                     (within, inside) = (beyond, beyond.inside(scene, w));
                     ray = surface.spawn(ray.dir);

@@ -108,7 +108,8 @@ impl Path {
                         return Status::Alive;
                     }
                     (Skin::Written, material) => {
-                        (material.bsdf(&(&hit).into(), &self.wavelengths, self.hero), material.disperses())
+                        let bsdf = material.bsdf(&(&hit).into(), &self.wavelengths, self.hero);
+                        (bsdf.seeded(|| sampler.rng.next_u32()), material.disperses())
                     }
                     (Skin::Between { eta, disperses }, material) => {
                         (material.bsdf_between(eta, &(&hit).into(), &self.wavelengths), disperses)
@@ -220,6 +221,10 @@ impl Path {
             tally.truncated_paths += 1;
             tally.truncated_throughput += f64::from(self.weights.throughput());
             return Status::Done;
+        }
+        // What only reflects is another BSDF for each wavelength, if it disperses: they part before light is sampled.
+        if disperses && !vertex.transmits() {
+            self.part_wavelengths();
         }
         let reference = vertex.reference();
         if vertex.can_use_light_samples() {

@@ -230,6 +230,7 @@ impl<'a> World<'a> {
                 continue;
             }
             let bsdf = skin.bsdf(material, &hit, &self.wavelengths, self.lane);
+            let bsdf = bsdf.seeded(|| self.sampler.rng.next_u32());
             let from_outside = omega.dot(hit.ng) < 0.0;
             return Some(Point {
                 place: Place::Surface { hit, bsdf, relief, from_outside, beyond },

@@ -111,6 +111,15 @@ impl Vertex {
         }
     }
 
+    /// Whether light can go on beyond.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        match self {
+            Self::Surface { bsdf, .. } => bsdf.transmits(),
+            Self::Medium { .. } => true,
+        }
+    }
+
     /// Whether a light sample could contribute at all.
     #[inline]
     pub fn can_use_light_samples(&self) -> bool {

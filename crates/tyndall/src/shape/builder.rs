@@ -228,7 +228,7 @@ impl GeometryBuilder {
         if entries.len() >= 1 << 27 {
             return Err(ShapeError::TooMany);
         }
-        Ok(build(&entries))
+        Ok(build(entries))
     }
 
     fn primitive(&self, object: u32) -> Primitive {
