@@ -5,6 +5,7 @@ mod lights;
 pub(crate) mod made;
 mod materials;
 mod media;
+mod meshes;
 mod painted;
 mod shapes;
 mod spectra;
@@ -32,6 +33,7 @@ use crate::{
     source::{SourceMap, Span},
 };
 use made::Made;
+use meshes::Meshes;
 use spectra::Measure;
 use textures::Pictures;
 
@@ -55,6 +57,7 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    meshes: Meshes,
     /// Colours of meshes: of vertices, and of faces.
     painted: [Arc<Painted>; 2],
     made: Made,
@@ -67,6 +70,7 @@ impl<'a> Builder<'a> {
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            meshes: Meshes::new(desc),
             painted: [Arc::default(), Arc::default()],
             made: Made::new(desc.materials.len()),
         }
@@ -75,6 +79,12 @@ impl<'a> Builder<'a> {
 
 impl Builder<'_> {
     fn scene(&mut self, color: ColorMode) -> Option<Scene> {
+        if self.desc.film.color() == ColorMode::Spectral && color != ColorMode::Spectral {
+            return self.fail(
+                SceneError::at(self.desc.film.span, "this film records wavelengths, and the render has colours only")
+                    .help("render it with --color spectral"),
+            );
+        }
         // First the shapes: textures may show the colours of meshes.
         let shapes = self.shapes();
         let materials = self.materials();

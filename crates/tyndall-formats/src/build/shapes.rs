@@ -150,7 +150,7 @@ impl<'a> Builder<'a> {
             ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
                 let mut mesh = match displacement {
-                    None => read_ply(&path.value),
+                    None => self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)),
                     Some(displacement) => self.displaced(path, displacement, &transform)?,
                 };
                 if let Ok(mesh) = &mut mesh {
@@ -169,12 +169,14 @@ impl<'a> Builder<'a> {
             }
             ShapeKind::Serialized { path, index, face_normals } => {
                 let normals = Normals::asked(*face_normals, true);
-                let mesh = self.mesh_file(read_serialized(&path.value, *index), path, normals, false)?;
+                let mesh = self.meshes.get((path.value.clone(), *index), || read_serialized(&path.value, *index));
+                let mesh = self.mesh_file(mesh, path, normals, false)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
             ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_obj(&path.value), path, normals, *flip_tex_coords)?;
+                let mesh = self.meshes.get((path.value.clone(), 0), || read_obj(&path.value));
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
@@ -312,7 +314,7 @@ impl<'a> Builder<'a> {
             displace(mesh, length, displacement.edge_length, height)
                 .map_err(|problem| MeshError { path: path.value.clone(), problem })
         };
-        Some(read_ply(&path.value).and_then(displace))
+        Some(self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)).and_then(displace))
     }
 
     /// The lights of a shining object, added to `lights`.
