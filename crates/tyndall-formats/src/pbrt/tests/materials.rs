@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use tyndall::{material::Material, spectrum::ColorMode};
+use tyndall::{material::Material, relief::Rule, spectrum::ColorMode};
 
 use super::{parse, world};
 use crate::build::build;
-use crate::desc::{MaterialKind, Varying};
+use crate::desc::{Encoding, MaterialKind, ReliefMap, TextureId, TextureKind, Varying, WrapKind};
+use crate::source::Spanned;
 
 #[test]
 fn a_mix_names_two_materials_that_may_come_later() {
@@ -56,4 +57,28 @@ fn a_material_that_contains_itself_is_an_error() {
         doubled += &mix(&format!("{}", i + 1), &format!("{i}"));
     }
     assert_eq!(fault(&doubled), message);
+}
+
+/// A normal map comes before heights; heights may be a number, and stay in scene units. The even material is another one, and
+/// the name is that of both together.
+#[test]
+fn a_material_with_a_relief_is_another_material_embossed() {
+    let desc = world(
+        r#"Texture "bumps" "float" "fbm" MakeNamedMaterial "m" "string type" "conductor" "texture displacement" "bumps"
+        Material "dielectric" "float displacement" -2 "string normalmap" "n.png" Material "diffuse""#,
+    );
+    let kind = |kind: &MaterialKind| match kind {
+        MaterialKind::Embossed { of, map, rule: Rule::Pbrt } => Some((of.value, map.clone())),
+        _ => None,
+    };
+    let embossed: Vec<_> = desc.materials.iter().filter_map(|m| kind(&m.kind).zip(Some(m.name.as_deref()))).collect();
+    let [((metal, heights), Some("m")), ((glass, normals), None)] = &embossed[..] else { panic!("{embossed:?}") };
+    assert!(matches!(desc.material(*metal).unwrap().kind, MaterialKind::Conductor { .. }));
+    assert!(
+        matches!(heights, ReliefMap::Heights { texture, scale: 1.0 } if texture.value == Varying::Texture(TextureId(0)))
+    );
+    assert!(matches!(desc.material(*glass).unwrap().kind, MaterialKind::Dielectric { .. }));
+    let ReliefMap::Normals(Spanned { value: Varying::Texture(id), .. }) = normals else { panic!() };
+    let TextureKind::Image(image) = &desc.texture(*id).unwrap().kind else { panic!() };
+    assert_eq!((image.encoding, image.wrap), (Encoding::Linear, WrapKind::Repeat));
 }
