@@ -9,6 +9,7 @@ use crate::{
         Bsdf, Plastic, Sides, index_of_reflectance,
         microfacet::{Distribution, Shadowing},
     },
+    relief::Relief,
     scene::MaterialId,
     spectrum::{Lanes, Sampled, Wavelengths, glass::Glass},
     texture::{Texture, TexturePoint},
@@ -98,6 +99,13 @@ pub enum Material {
         outside: MaterialId,
         /// On the other side.
         inside: MaterialId,
+    },
+    /// Another material, shaded as if the surface were uneven.
+    Embossed {
+        /// It; neither this one nor one that is embossed is part of it.
+        of: MaterialId,
+        /// How uneven.
+        relief: Box<Relief>,
     },
 }
 
@@ -211,7 +219,7 @@ impl Material {
             }
             Self::Coated(coated) => coated.bsdf(at, wavelengths, hero),
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
-            Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } => Bsdf::Null,
+            Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } | Self::Embossed { .. } => Bsdf::Null,
         }
     }
 

@@ -6,6 +6,7 @@ use tyndall::{
         microfacet::{Distribution, Shadowing},
     },
     material::{CoatedBase, CoatedMaterial, Index, Material, Metal, Roughness},
+    relief::{Map, Relief},
     spectrum::{Spectrum, glass::Glass},
     texture::Texture,
 };
@@ -13,11 +14,11 @@ use tyndall::{
 use super::{Builder, made::parts, material_id, spectra::Measure};
 use crate::{
     desc::{
-        BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc,
-        ShadowingKind, SpectrumDesc, Varying,
+        BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, ReliefMap,
+        RoughnessDesc, ShadowingKind, SpectrumDesc, Varying,
     },
     error::SceneError,
-    source::Spanned,
+    source::{Span, Spanned},
 };
 
 /// The most materials that one can be made of, counted as often as they are part of it.
@@ -107,6 +108,28 @@ impl Builder<'_> {
             MaterialKind::TwoFaced { of: [outside, inside] } => {
                 Some(Material::TwoFaced { outside: material_id(outside.value), inside: material_id(inside.value) })
             }
+            MaterialKind::Embossed { of, map, rule } => {
+                if let Some(other) = self.embossed_part(of) {
+                    let error = SceneError::not_yet(desc.span, "a relief upon a relief is not known yet");
+                    return self.fail(error.help("leave one of them out").related(other, "the other one"));
+                }
+                let map = match map {
+                    ReliefMap::Heights { texture, scale } => {
+                        Map::Heights { texture: self.texture(texture, Measure::Number)?, scale: *scale as f32 }
+                    }
+                    ReliefMap::Normals(texture) => Map::Normals(self.texture(texture, Measure::Share)?),
+                };
+                Some(Material::Embossed { of: material_id(of.value), relief: Box::new(Relief { map, rule: *rule }) })
+            }
+        }
+    }
+
+    /// Where a material, or a part of it, is embossed.
+    fn embossed_part(&self, of: &Spanned<MaterialId>) -> Option<Span> {
+        let desc = self.desc.material(of.value)?;
+        match &desc.kind {
+            MaterialKind::Embossed { .. } => Some(desc.span),
+            kind => parts(kind).iter().find_map(|part| self.embossed_part(part)),
         }
     }
 

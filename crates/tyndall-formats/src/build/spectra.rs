@@ -22,7 +22,7 @@ pub(super) enum Measure {
     Share,
     /// A coefficient, at least 0.
     Coefficient,
-    /// A number that may be negative.
+    /// Any number: a height, a mean cosine.
     Number,
     /// An index of refraction, at least 0. It filters no light: in `rgb` mode its measured values are seen under equal
     /// energy, as Mitsuba sees those of its metals.

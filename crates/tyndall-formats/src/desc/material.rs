@@ -1,5 +1,7 @@
 //! What surfaces are made of.
 
+use tyndall::relief::Rule;
+
 use super::{MaterialId, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
@@ -96,6 +98,29 @@ pub enum MaterialKind {
         /// On the side of the normal, and on the other one.
         of: [Spanned<MaterialId>; 2],
     },
+    /// A material shaded as if its surface were uneven.
+    Embossed {
+        /// It; neither this one nor one that is embossed is part of it.
+        of: Spanned<MaterialId>,
+        /// How uneven.
+        map: ReliefMap,
+        /// What is done where that would turn light round.
+        rule: Rule,
+    },
+}
+
+/// How uneven a surface is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReliefMap {
+    /// By heights along the normal, in scene units.
+    Heights {
+        /// They.
+        texture: Spanned<Varying>,
+        /// A factor on them.
+        scale: f64,
+    },
+    /// By normals `n` in the shading frame, as the colours `(n + 1)/2`.
+    Normals(Spanned<Varying>),
 }
 
 /// A base under a coat.

@@ -35,11 +35,12 @@ pub use camera::{
 };
 pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
 pub use material::{
-    BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
+    BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc,
+    ShadowingKind,
 };
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
-pub use shape::{GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
+pub use shape::{DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 pub use spectrum::SpectrumDesc;
 pub use texture::{
     Board, Encoding, ImageDesc, MappingDesc, NoiseDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind,

@@ -2,13 +2,16 @@
 
 use std::borrow::Cow;
 
+use tyndall::relief::Rule;
+
 use super::Reader;
 use super::params::Params;
 use super::parser::Statement;
 use super::textures::Textures;
 use crate::desc::{
-    BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc,
-    ShadowingKind, SpectrumDesc, Varying,
+    BaseDesc, CoatedDesc, ConductorOptics, Encoding, ImageDesc, MappingDesc, MaterialDesc, MaterialId, MaterialKind,
+    MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, TextureDesc, TextureId, TextureKind,
+    Varying, WrapKind,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
@@ -87,10 +90,38 @@ impl Reader {
                 return MaterialDesc { name, ..MaterialDesc::pbrt_default(span) };
             }
         };
-        p.later("displacement");
-        p.later("normalmap");
+        let map = match made {
+            MaterialKind::Mix { .. } | MaterialKind::Interface => None,
+            _ => self.relief(&mut p),
+        };
         self.finish_params(p);
-        MaterialDesc { span, name, kind: made, two_sided: true }
+        let desc = MaterialDesc { span, name, kind: made, two_sided: true };
+        let Some(map) = map else { return desc };
+        let name = desc.name.clone();
+        let even = MaterialId(self.materials.push(span, MaterialDesc { name: None, ..desc }));
+        let kind = MaterialKind::Embossed { of: Spanned::new(even, span), map, rule: Rule::Pbrt };
+        MaterialDesc { span, name, kind, two_sided: true }
+    }
+
+    /// A normal map, or else a bump map.
+    fn relief(&mut self, p: &mut Params) -> Option<ReliefMap> {
+        let heights = p.number("displacement", &self.textures, |_| true);
+        let Some(file) = p.string_opt("normalmap") else {
+            return heights.map(|texture| ReliefMap::Heights { texture, scale: 1.0 });
+        };
+        let image = ImageDesc {
+            path: Spanned::new(p.resolve(&file.value), file.span),
+            mapping: MappingDesc::UV,
+            wrap: WrapKind::Repeat,
+            smooth: true,
+            scale: 1.0,
+            invert: false,
+            by_luminance: false,
+            encoding: Encoding::Linear,
+        };
+        let id = TextureId(self.textures.list.len() as u32);
+        self.textures.list.push(TextureDesc { span: file.span, name: None, kind: TextureKind::Image(image) });
+        Some(ReliefMap::Normals(file.map(|_| Varying::Texture(id))))
     }
 }
 
@@ -117,11 +148,7 @@ fn diffuse(p: &mut Params, textures: &Textures) -> MaterialKind {
 }
 
 fn conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
-    MaterialKind::Conductor {
-        optics: optics(p, textures, ["eta", "k"]),
-        roughness: roughness(p, textures, ROUGHNESS),
-        tint: None,
-    }
+    MaterialKind::Conductor { optics: optics(p, textures, ["eta", "k"]), roughness: rough(p, textures), tint: None }
 }
 
 /// How a metal reflects, whose complex index has these names.
@@ -147,32 +174,34 @@ fn optics(p: &mut Params, textures: &Textures, [eta, k]: [&'static str; 2]) -> C
 
 fn coated_diffuse(p: &mut Params, textures: &Textures) -> MaterialKind {
     let base = BaseDesc::Diffuse(p.varying("reflectance", 0.5, textures));
-    coated(p, textures, "eta", ROUGHNESS, base)
+    let roughness = rough(p, textures);
+    coated(p, textures, "eta", roughness, base)
 }
 
 fn coated_conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
-    let names = ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"];
-    let base = BaseDesc::Conductor {
-        optics: optics(p, textures, ["conductor.eta", "conductor.k"]),
-        roughness: roughness(p, textures, names),
-    };
-    let names = ["interface.roughness", "interface.uroughness", "interface.vroughness"];
-    coated(p, textures, "interface.eta", names, base)
+    let remap = remap(p);
+    let [base, top] = [
+        ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"],
+        ["interface.roughness", "interface.uroughness", "interface.vroughness"],
+    ]
+    .map(|names| roughness(p, textures, names, remap));
+    let optics = optics(p, textures, ["conductor.eta", "conductor.k"]);
+    coated(p, textures, "interface.eta", top, BaseDesc::Conductor { optics, roughness: base })
 }
 
-/// The coat, whose index and roughness have these names.
+/// The coat, whose index has this name.
 fn coated(
     p: &mut Params,
     textures: &Textures,
     eta: &'static str,
-    roughness_names: [&'static str; 3],
+    roughness: RoughnessDesc,
     base: BaseDesc,
 ) -> MaterialKind {
     let thickness = p.amount("thickness", textures);
     let g = p.number("g", textures, |_| true);
     MaterialKind::Coated(Box::new(CoatedDesc {
         eta: p.spectrum_or_float(eta, SpectrumDesc::Constant(1.5)),
-        roughness: roughness(p, textures, roughness_names),
+        roughness,
         thickness: thickness.unwrap_or(Spanned::new(Varying::constant(0.01), p.span)),
         albedo: p.varying("albedo", 0.0, textures),
         g: g.unwrap_or(Spanned::new(Varying::constant(0.0), p.span)),
@@ -194,7 +223,7 @@ fn few(p: &mut Params, name: &'static str, default: u16, least: u32) -> u16 {
 fn dielectric(p: &mut Params, textures: &Textures) -> MaterialKind {
     MaterialKind::Dielectric {
         eta: p.spectrum_or_float("eta", SpectrumDesc::Constant(1.5)),
-        roughness: roughness(p, textures, ROUGHNESS),
+        roughness: rough(p, textures),
         reflection_tint: None,
         transmission_tint: None,
     }
@@ -219,13 +248,24 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
 /// The names of a roughness: along both tangents, along the first, along the second.
 const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
 
-fn roughness(p: &mut Params, textures: &Textures, [both, u, v]: [&'static str; 3]) -> RoughnessDesc {
+/// The roughness of a material with one surface.
+fn rough(p: &mut Params, textures: &Textures) -> RoughnessDesc {
+    let remap = remap(p);
+    roughness(p, textures, ROUGHNESS, remap)
+}
+
+/// Whether roughness is that of the eye or of the model, of all surfaces of a material.
+fn remap(p: &mut Params) -> bool {
+    p.boolean("remaproughness", true).value
+}
+
+fn roughness(p: &mut Params, textures: &Textures, [both, u, v]: [&'static str; 3], remap: bool) -> RoughnessDesc {
     let smooth = Spanned::new(Varying::constant(0.0), p.span);
     let both = p.amount(both, textures).unwrap_or(smooth);
     RoughnessDesc {
         u: p.amount(u, textures).unwrap_or_else(|| both.clone()),
         v: p.amount(v, textures).unwrap_or(both),
-        remap: p.boolean("remaproughness", true).value,
+        remap,
         distribution: MicrofacetKind::Ggx,
         shadowing: ShadowingKind::Correlated,
     }

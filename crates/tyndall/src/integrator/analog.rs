@@ -83,7 +83,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             Some(hit) => {
                 let mut surface = scene.geometry.interaction(&ray, &hit);
                 let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, w, lane, tally);
-                let material = scene.meet(&surface, ray.dir, || sampler.next_1d());
+                let (material, relief) = scene.meet(&surface, ray.dir, || sampler.next_1d());
                 if matches!(material, Material::Hole) {
                     ray = surface.spawn(ray.dir);
                     continue;
@@ -98,7 +98,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                     continue;
                 }
                 tally.surface_vertices += 1;
-                (Vertex::surface(surface, bsdf, ray.dir), beyond)
+                (Vertex::met(scene, surface, bsdf, ray.dir, relief), beyond)
             }
         };
 

@@ -95,7 +95,7 @@ impl Path {
             Event::Surface(mut hit) => {
                 let skin = if scene.has_bodies() { self.meet(scene, &mut hit, tally) } else { Skin::Written };
                 let sampler = &mut self.sampler;
-                let material = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
+                let (material, relief) = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
                 let (bsdf, disperses) = match (skin, material) {
                     (_, Material::Hole) => {
                         self.pass_opening(scene, &hit);
@@ -117,7 +117,7 @@ impl Path {
                 };
                 self.find_emitter(scene, &hit, sink);
                 tally.surface_vertices += 1;
-                let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
+                let vertex = Vertex::met(scene, hit, bsdf, self.ray.dir, relief);
                 self.scatter(scene, settings, &vertex, disperses, sink, tally)
             }
             Event::Scatter { p, phase, emitted } => {
