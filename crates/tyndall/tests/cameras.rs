@@ -9,7 +9,7 @@ use testkit::{Family, Grid, Stream, close, sphere_test};
 use tyndall::{
     camera::{
         Batch, CameraModel, Element, IrradianceMeter, LensSystem, Orthographic, Perspective, RadianceMeter, Realistic,
-        Spherical, SphericalMapping, Stop, ThinLens, View,
+        Spherical, SphericalMapping, Stop, Surface, ThinLens, View,
     },
     integrator::VolPath,
     light::EmitterShape,
@@ -20,6 +20,10 @@ const N: usize = 200_000;
 
 fn next_2d(stream: &mut Stream) -> Vec2 {
     Vec2::new(stream.next_f32(), stream.next_f32())
+}
+
+fn meter(pieces: Vec<EmitterShape>) -> IrradianceMeter {
+    IrradianceMeter { surface: Surface::new(pieces).unwrap() }
 }
 
 fn view(model: CameraModel) -> View {
@@ -84,7 +88,7 @@ fn an_irradiance_meter_is_uniform_in_area_and_follows_the_cosine() {
         e2: Vec3::X * width,
         ng: Vec3::Y,
     };
-    let meter = IrradianceMeter::new(vec![triangle(0.0, 1.0), triangle(1.0, 3.0)]).unwrap();
+    let meter = meter(vec![triangle(0.0, 1.0), triangle(1.0, 3.0)]);
     let camera = view(CameraModel::IrradianceMeter(meter));
     let mut stream = Stream::new(3);
     let directions = || {
@@ -113,7 +117,7 @@ fn every_camera_sees_a_uniform_world_as_its_page_says() {
         (CameraModel::Orthographic(Orthographic { window }), 1.0),
         (CameraModel::Spherical(Spherical { mapping: SphericalMapping::EqualArea }), 1.0),
         (CameraModel::RadianceMeter(RadianceMeter), 1.0),
-        (CameraModel::IrradianceMeter(IrradianceMeter::new(vec![sphere]).unwrap()), PI),
+        (CameraModel::IrradianceMeter(meter(vec![sphere])), PI),
         (CameraModel::Realistic(Box::new(Realistic::new(lens, 0.002, 1.0).unwrap())), on_axis),
     ];
     for (model, expected) in cameras {
@@ -133,7 +137,7 @@ fn a_meter_measures_on_the_side_of_its_normal() {
     for (ng, expected) in [(Vec3::Y, 0.25), (-Vec3::Y, 2.0)] {
         let mut world = World::seen(Vec3::Y, Vec3::ZERO);
         let plate = EmitterShape::Disk { centre: Vec3::Y * 5.0, ng, radius: 0.3, inner: 0.1 };
-        world.camera.view.model = CameraModel::IrradianceMeter(IrradianceMeter::new(vec![plate]).unwrap());
+        world.camera.view.model = CameraModel::IrradianceMeter(meter(vec![plate]));
         world.half_sky(0.25, 2.0);
         assert_mean("plate", &world.measure(&VolPath::default(), 10_000), [expected * PI; 3], 0.01);
     }

@@ -27,7 +27,14 @@ fn point(position: Vec3, luminance: f32) -> Light {
 }
 
 fn area(shape: EmitterShape, luminance: f32, two_sided: bool) -> Light {
-    Light::Area(AreaLight { shape, radiance: Spectrum::constant(luminance), luminance, two_sided, opacity: 1.0 })
+    Light::Area(AreaLight {
+        shape,
+        radiance: Spectrum::constant(luminance),
+        luminance,
+        two_sided,
+        opacity: 1.0,
+        pattern: None,
+    })
 }
 
 fn triangle(a: Vec3, e1: Vec3, e2: Vec3) -> EmitterShape {
@@ -48,6 +55,7 @@ fn any_light(stream: &mut Stream, at: Vec3) -> Light {
             cos_inner: 0.9,
             cos_outer: -0.2 + stream.next_f32(),
             falloff: Falloff::LinearAngle,
+            slide: None,
         }),
         2 => area(EmitterShape::Sphere { centre: at, radius: 0.01, inward: e.x > 0.0 }, luminance, false),
         3 => area(EmitterShape::Disk { centre: at, ng: d, radius: 0.03, inner: 0.01 }, luminance, e.x > 0.0),

@@ -1,15 +1,17 @@
 //! An emitting surface: radiance `L` from every point into the hemisphere of its normal (or both).
 //!
 //! Points are drawn uniformly in solid angle where a closed form exists (spheres by their cone; rectangles, Ureña et al.
-//! 2013), else uniformly in area, with density `d² / (A |cos θ|)` per steradian.
+//! 2013), else uniformly in area, or nearly so, with density `d² p_A / |cos θ|` per steradian.
 
 use std::f32::consts::PI;
 
-use super::{LightSample, Reference, Target};
+use super::{LightSample, Pattern, Reference, Target};
 use crate::{
     math::{Bounds, Frame, Vec2, Vec3, rounding::gamma},
     sampling::{spherical_rectangle::SphericalRectangle, warp},
+    shape::Patch,
     spectrum::{Lanes, Spectrum, Wavelengths},
+    texture::TexturePoint,
 };
 
 /// An emitting piece of surface.
@@ -26,6 +28,8 @@ pub struct AreaLight {
     /// How much of the surface is there \[1\]: the rest are holes. Of a surface that is not there at all the light remains,
     /// and only light sampling finds it (pbrt).
     pub opacity: f32,
+    /// What varies over it, if anything does.
+    pub pattern: Option<Box<Pattern>>,
 }
 
 /// The shapes that can emit.
@@ -73,6 +77,8 @@ pub enum EmitterShape {
         /// Radius of the hole [length].
         inner: f32,
     },
+    /// A bilinear patch.
+    Patch(Patch),
 }
 
 /// A point on an emitter: place, unit normal, bound on the rounding error.
@@ -91,6 +97,15 @@ impl EmitterShape {
             Self::Parallelogram { e1, e2, .. } => e1.cross(e2).length(),
             Self::Sphere { radius, .. } => 4.0 * PI * radius * radius,
             Self::Disk { radius, inner, .. } => PI * (radius * radius - inner * inner),
+            Self::Patch(patch) => patch.area(),
+        }
+    }
+
+    /// As [`Self::area`], good for a guess: quickly.
+    fn rough_area(&self) -> f32 {
+        match self {
+            Self::Patch(patch) => patch.rough_area(),
+            _ => self.area(),
         }
     }
 
@@ -106,7 +121,7 @@ impl EmitterShape {
     pub fn normal(&self) -> Option<Vec3> {
         match *self {
             Self::Triangle { ng, .. } | Self::Parallelogram { ng, .. } | Self::Disk { ng, .. } => Some(ng),
-            Self::Sphere { .. } => None,
+            Self::Sphere { .. } | Self::Patch(_) => None,
         }
     }
 
@@ -120,15 +135,45 @@ impl EmitterShape {
                 let reach = (Vec3::ONE - ng * ng).max(Vec3::ZERO).map(f32::sqrt) * radius;
                 Bounds { min: centre - reach, max: centre + reach }
             }
+            Self::Patch(patch) => Bounds::of(patch.corners),
         }
     }
 
-    /// Which side of a flat emitter a point is on, as a height over its plane; `None` for a sphere.
-    fn height(&self, p: Vec3) -> Option<f32> {
+    /// Which side of a flat emitter a point is on, as a height over its plane; `None` for a curved one.
+    pub(crate) fn height(&self, p: Vec3) -> Option<f32> {
         match *self {
             Self::Triangle { a, ng, .. } | Self::Parallelogram { a, ng, .. } => Some((p - a).dot(ng)),
             Self::Disk { centre, ng, .. } => Some((p - centre).dot(ng)),
-            Self::Sphere { .. } => None,
+            Self::Sphere { .. } | Self::Patch(_) => None,
+        }
+    }
+
+    /// Weights of `e1` and `e2` at a point of the plane of a triangle or a parallelogram [1].
+    pub(crate) fn weights(&self, p: Vec3) -> [f32; 2] {
+        match *self {
+            Self::Triangle { a, e1, e2, .. } | Self::Parallelogram { a, e1, e2, .. } => {
+                let n = e1.as_dvec3().cross(e2.as_dvec3());
+                let from = (p - a).as_dvec3();
+                let square = n.length_squared();
+                [from.cross(e2.as_dvec3()), e1.as_dvec3().cross(from)].map(|v| (v.dot(n) / square) as f32)
+            }
+            Self::Sphere { .. } | Self::Disk { .. } | Self::Patch(_) => [0.0; 2],
+        }
+    }
+
+    /// Whether a point of the plane of a flat emitter lies on it.
+    pub(crate) fn holds(&self, p: Vec3) -> bool {
+        match *self {
+            Self::Triangle { .. } => {
+                let [b1, b2] = self.weights(p);
+                b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0
+            }
+            Self::Parallelogram { .. } => self.weights(p).iter().all(|b| (0.0..=1.0).contains(b)),
+            Self::Disk { centre, radius, inner, .. } => {
+                let d2 = centre.distance_squared(p);
+                d2 <= radius * radius && d2 >= inner * inner
+            }
+            Self::Sphere { .. } | Self::Patch(_) => false,
         }
     }
 
@@ -137,10 +182,11 @@ impl EmitterShape {
             Self::Triangle { a, e1, e2, .. } => a + (e1 + e2) / 3.0,
             Self::Parallelogram { a, e1, e2, .. } => a + (e1 + e2) * 0.5,
             Self::Sphere { centre, .. } | Self::Disk { centre, .. } => centre,
+            Self::Patch(patch) => patch.corners.iter().sum::<Vec3>() * 0.25,
         }
     }
 
-    /// Uniform in area.
+    /// Uniform in area, or nearly so.
     pub(crate) fn sample_area(&self, u: Vec2) -> Point {
         match *self {
             Self::Triangle { a, e1, e2, ng } => {
@@ -161,6 +207,18 @@ impl EmitterShape {
                 let f = Frame::around(ng);
                 flat(centre, f.s * (d.x * stretch * radius), f.t * (d.y * stretch * radius), ng)
             }
+            Self::Patch(patch) => {
+                let (p, ng, error) = patch.sample_area(u);
+                Point { p, ng, error }
+            }
+        }
+    }
+
+    /// Density of [`Self::sample_area`] at a point with unit normal `ng` [1/length²].
+    pub(crate) fn pdf_area(&self, p: Vec3, ng: Vec3) -> f32 {
+        match self {
+            Self::Patch(patch) => patch.pdf_area(p, ng),
+            _ => 1.0 / self.area(),
         }
     }
 }
@@ -176,10 +234,17 @@ fn sphere_point(centre: Vec3, radius: f32, n: Vec3, inward: bool) -> Point {
 }
 
 impl AreaLight {
-    /// Radiance leaving a point with unit normal `ng` towards `dir` [W·m⁻²·sr⁻¹].
+    /// Radiance leaving a point with unit normal `ng` towards `dir` [W·m⁻²·sr⁻¹]; `at` is the point as textures see it.
     #[inline]
-    pub fn le(&self, ng: Vec3, dir: Vec3, wavelengths: &Wavelengths) -> Lanes {
-        if self.two_sided || ng.dot(dir) > 0.0 { self.radiance.eval(wavelengths) } else { Lanes::ZERO }
+    pub fn le(&self, ng: Vec3, dir: Vec3, at: impl FnOnce() -> TexturePoint, wavelengths: &Wavelengths) -> Lanes {
+        if !self.two_sided && ng.dot(dir) <= 0.0 {
+            return Lanes::ZERO;
+        }
+        let radiance = self.radiance.eval(wavelengths);
+        match &self.pattern {
+            None => radiance,
+            Some(pattern) => radiance * pattern.factor(&at(), wavelengths),
+        }
     }
 
     /// A direction towards the emitter.
@@ -192,15 +257,30 @@ impl AreaLight {
         let to_light = point.p - from.p;
         let d2 = to_light.length_squared();
         let dir = to_light / d2.sqrt();
-        let shares = if self.opacity == 0.0 { 1.0 } else { self.opacity };
-        let li = self.le(point.ng, -dir, wavelengths) * shares;
-        (pdf > 0.0 && pdf.is_finite() && d2 > 0.0 && !li.is_zero()).then_some(LightSample {
+        if !(pdf > 0.0 && pdf.is_finite() && d2 > 0.0) || (!self.two_sided && point.ng.dot(dir) >= 0.0) {
+            return None;
+        }
+        let li = self.radiance.eval(wavelengths) * self.share(&point, wavelengths);
+        (!li.is_zero()).then_some(LightSample {
             dir,
             li,
             pdf,
             dirac: self.opacity == 0.0,
             target: Target::Surface { p: point.p, error: point.error, ng: point.ng },
         })
+    }
+
+    /// The share of the radiance that light sampling takes at a point: as much of it as there is surface.
+    #[inline]
+    fn share(&self, point: &Point, wavelengths: &Wavelengths) -> Lanes {
+        let there = if self.opacity == 0.0 { 1.0 } else { self.opacity };
+        match &self.pattern {
+            None => Lanes::splat(there),
+            Some(pattern) => {
+                let at = pattern.texture_point(&self.shape, point.p, point.ng);
+                pattern.factor(&at, wavelengths) * (there * pattern.opacity(&at))
+            }
+        }
     }
 
     /// A point and its density [1/sr].
@@ -222,7 +302,7 @@ impl AreaLight {
             _ => {}
         }
         let point = self.shape.sample_area(u);
-        let pdf = area_to_solid_angle(from.p, point.p, point.ng, self.shape.area());
+        let pdf = area_to_solid_angle(from.p, point.p, point.ng, self.shape.pdf_area(point.p, point.ng));
         (point, pdf)
     }
 
@@ -242,13 +322,13 @@ impl AreaLight {
             }
             _ => {}
         }
-        area_to_solid_angle(from.p, p, ng, self.shape.area())
+        area_to_solid_angle(from.p, p, ng, self.shape.pdf_area(p, ng))
     }
 
     /// A guess at the irradiance made at `p` [W·m⁻²]: zero only behind a one-sided flat emitter.
     #[inline]
     pub fn importance(&self, p: Vec3) -> f32 {
-        let area = self.shape.area();
+        let area = self.shape.rough_area();
         let d2 = self.shape.centre().distance_squared(p).max(0.25 * area);
         let cosine = match self.shape.height(p) {
             Some(h) if h <= 0.0 && !self.two_sided => return 0.0,
@@ -288,11 +368,12 @@ fn is_rectangle(e1: Vec3, e2: Vec3) -> bool {
     e1.dot(e2).abs() <= 1e-5 * (e1.length() * e2.length())
 }
 
-fn area_to_solid_angle(from: Vec3, p: Vec3, ng: Vec3, area: f32) -> f32 {
+/// A density by area [1/length²], by solid angle [1/sr].
+fn area_to_solid_angle(from: Vec3, p: Vec3, ng: Vec3, pdf_area: f32) -> f32 {
     let to_light = p - from;
     let d2 = to_light.length_squared();
     let cosine = (to_light.dot(ng)).abs() / d2.sqrt();
-    if cosine > 0.0 { d2 / (area * cosine) } else { 0.0 }
+    if cosine > 0.0 { pdf_area * d2 / cosine } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -300,7 +381,14 @@ mod tests {
     use super::*;
 
     fn light(shape: EmitterShape) -> AreaLight {
-        AreaLight { shape, radiance: Spectrum::constant(1.0), luminance: 1.0, two_sided: false, opacity: 1.0 }
+        AreaLight {
+            shape,
+            radiance: Spectrum::constant(1.0),
+            luminance: 1.0,
+            two_sided: false,
+            opacity: 1.0,
+            pattern: None,
+        }
     }
 
     /// Irradiance of a uniform emitter on a plane that faces it, over π: the form factor from a point.

@@ -208,7 +208,7 @@ impl Hierarchy {
 
 impl Infinite {
     fn of(ids: Vec<LightId>, lights: &[Light]) -> Option<Self> {
-        let weights: Vec<f64> = ids.iter().map(|id| f64::from(lights[id.0 as usize].importance(Vec3::ZERO))).collect();
+        let weights: Vec<f64> = ids.iter().map(|id| f64::from(lights[id.0 as usize].importance_at_large())).collect();
         let total: f64 = weights.iter().sum();
         // A colour may shine without luminance: everyone keeps a share of the mean.
         let least = 1e-6 * total / weights.len().max(1) as f64 + f64::MIN_POSITIVE;

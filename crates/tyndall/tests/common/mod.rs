@@ -244,6 +244,7 @@ impl World {
             luminance: le,
             two_sided: false,
             opacity: 1.0,
+            pattern: None,
         }));
     }
 

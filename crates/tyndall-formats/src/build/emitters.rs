@@ -1,0 +1,308 @@
+//! The lights that shapes are.
+
+use std::f64::consts::PI;
+
+use tyndall::{
+    light::{AreaLight, Beam, Coordinates, EmitterShape, Light, LightId, Pattern},
+    math::{Vec2, Vec3},
+    scene::Emission,
+    shape::{Geometry, Mesh, ObjectId, Shape},
+    spectrum::{Spectrum, Wavelengths, srgb},
+    texture::{Texture, TexturePoint},
+};
+
+use super::{Builder, spectra::Measure};
+use crate::{
+    desc::{AreaLightDesc, Spread, Varying},
+    error::SceneError,
+    source::Spanned,
+};
+
+/// Points a side by which the light of a patterned surface is summed up, of a shape and of one triangle of many.
+const FINENESS: [u32; 2] = [32, 4];
+/// The least part of its light that a dark piece of a patterned surface counts as: a guess may have missed a bright spot.
+const LEAST: f32 = 1e-4;
+/// The most points a side by which a picture is summed up.
+const FINEST: u32 = 2048;
+
+/// An object that shines.
+pub(super) struct Shining<'a> {
+    pub(super) object: ObjectId,
+    pub(super) light: &'a AreaLightDesc,
+    /// How much of it is there, if not all.
+    pub(super) opacity: Option<&'a Spanned<Varying>>,
+    /// Whether each of its triangles is a light of its own in the scene's language.
+    pub(super) by_face: bool,
+}
+
+/// The light of an object, before it is divided among its pieces.
+struct Emitted {
+    radiance: Spectrum,
+    texture: Option<Texture>,
+    /// How much is there where a texture says so; else all or a constant part of it.
+    opacity: Result<f32, Texture>,
+}
+
+impl Builder<'_> {
+    /// The lights of a shining object, added to `lights`.
+    pub(super) fn emitters(
+        &mut self,
+        geometry: &Geometry,
+        shining: &Shining,
+        lights: &mut Vec<Light>,
+    ) -> Option<Emission> {
+        let desc = shining.light;
+        let mut radiance = self.emission(&desc.radiance)?;
+        let texture = match &desc.pattern {
+            None => None,
+            Some(pattern) => Some(self.texture(pattern, Measure::Coefficient)?),
+        };
+        if radiance.is_zero() {
+            return Some(Emission::None);
+        }
+        let opacity = match shining.opacity.map(|opacity| (opacity, opacity.value.number())) {
+            None => Ok(1.0),
+            Some((_, Some(opacity))) => Ok(opacity as f32),
+            Some((opacity, None)) => Err(self.texture(opacity, Measure::Share)?),
+        };
+        let pieces = match pieces(geometry, shining.object) {
+            Ok(pieces) => pieces,
+            Err(what) => return self.cannot_shine(desc, what),
+        };
+        if desc.spread == Spread::Straight {
+            return self.beams(geometry, shining, pieces, &radiance, lights);
+        }
+        let mesh = match geometry.shape(shining.object) {
+            Shape::Mesh(mesh) => Some(mesh),
+            _ => None,
+        };
+        let varies = texture.is_some() || opacity.is_err();
+        let pieces = if varies { with_coordinates(pieces, mesh) } else { pieces };
+        let area: f64 = pieces.shapes().iter().map(|piece| f64::from(piece.area())).sum();
+        if let Some(power) = desc.power {
+            let mean = match &texture {
+                Some(texture) => mean_luminance(texture, self.picture_size(desc.pattern.as_ref())),
+                None => 1.0,
+            };
+            let of_unit = PI * mean * if desc.two_sided { 2.0 } else { 1.0 };
+            // Of a face by its own area, below; of a whole by the whole area.
+            let by = if shining.by_face { of_unit } else { of_unit * area };
+            let factor = power / by;
+            if !factor.is_finite() {
+                return self.fail(SceneError::at(desc.span, "what is black or has no area has no power"));
+            }
+            radiance = radiance.scaled(factor as f32);
+        }
+        let emitted = Emitted { radiance, texture, opacity };
+        let first = LightId(lights.len() as u32);
+        let each = matches!(pieces, Pieces::Each(_));
+        for (prim, shape) in pieces.shapes().iter().enumerate() {
+            let mut part = 1.0;
+            if desc.power.is_some() && shining.by_face {
+                // A parallelogram is two faces.
+                let faces = if matches!(shape, EmitterShape::Parallelogram { .. }) { 2.0 } else { 1.0 };
+                part = faces / shape.area();
+            }
+            let coordinates = || coordinates(geometry.shape(shining.object), shape, prim as u32);
+            let fineness = FINENESS[usize::from(each)];
+            lights.push(Light::Area(emitted.of(*shape, part, desc.two_sided, coordinates, fineness)));
+        }
+        Some(if each { Emission::EachPrimitive(first) } else { Emission::Whole(first) })
+    }
+
+    /// Flat pieces that shine straight ahead.
+    fn beams(
+        &mut self,
+        geometry: &Geometry,
+        shining: &Shining,
+        pieces: Pieces,
+        exitance: &Spectrum,
+        lights: &mut Vec<Light>,
+    ) -> Option<Emission> {
+        let faceted = !matches!(geometry.shape(shining.object), Shape::Mesh(mesh) if !mesh.normals.is_empty());
+        let shapes = pieces.shapes();
+        if !faceted || shapes.iter().any(|shape| shape.normal().is_none()) {
+            let error = SceneError::not_yet(shining.light.span, "only flat faces can shine straight ahead yet");
+            return self.fail(error.help("use a rectangle, a disk, or a mesh with \"face_normals\""));
+        }
+        if let Some(pattern) = &shining.light.pattern {
+            return self.fail(SceneError::not_yet(pattern.span, "light straight ahead has no texture yet"));
+        }
+        let (exitance, luminance) = (exitance.clone(), exitance.luminance());
+        let beam = |shape: &EmitterShape| Light::Beam(Beam { shape: *shape, exitance: exitance.clone(), luminance });
+        lights.extend(shapes.iter().map(beam));
+        Some(Emission::None)
+    }
+
+    fn cannot_shine<T>(&mut self, desc: &AreaLightDesc, what: &str) -> Option<T> {
+        self.fail(
+            SceneError::at(desc.span, format!("light from {what} is not known yet")).help("use a mesh of triangles"),
+        )
+    }
+}
+
+impl Emitted {
+    /// The light of a piece that has `part` of the radiance.
+    fn of(
+        &self,
+        shape: EmitterShape,
+        part: f32,
+        two_sided: bool,
+        coordinates: impl FnOnce() -> Coordinates,
+        fineness: u32,
+    ) -> AreaLight {
+        let radiance = self.radiance.clone().scaled(part);
+        let mut luminance = radiance.luminance();
+        let opacity = *self.opacity.as_ref().unwrap_or(&1.0);
+        let varies = self.texture.is_some() || self.opacity.is_err();
+        let pattern = varies.then(|| {
+            Box::new(Pattern {
+                texture: self.texture.clone().unwrap_or_else(|| 1.0.into()),
+                opacity: self.opacity.as_ref().err().cloned().unwrap_or_else(|| 1.0.into()),
+                coordinates: coordinates(),
+            })
+        });
+        if let Some(pattern) = &pattern {
+            let mean = pattern.mean_luminance(&radiance, &shape, fineness) as f32;
+            luminance = mean.max(LEAST * luminance);
+        }
+        AreaLight { shape, radiance, luminance, two_sided, opacity, pattern }
+    }
+}
+
+/// The surface of an object, as it can be sampled.
+pub(super) enum Pieces {
+    /// All of it at once.
+    Whole(EmitterShape),
+    /// A piece for each primitive.
+    Each(Vec<EmitterShape>),
+}
+
+impl Pieces {
+    /// In order.
+    pub(super) fn shapes(&self) -> &[EmitterShape] {
+        match self {
+            Self::Whole(shape) => std::slice::from_ref(shape),
+            Self::Each(shapes) => shapes,
+        }
+    }
+}
+
+/// The surface of an object; or what it is, if it cannot be sampled.
+pub(super) fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str> {
+    Ok(Pieces::Whole(match geometry.shape(object) {
+        Shape::Sphere(sphere) => {
+            let (centre, radius) = sphere.round().ok_or("an ellipsoid")?;
+            EmitterShape::Sphere { centre, radius, inward: sphere.reversed }
+        }
+        Shape::Disk(disk) => {
+            let radius = disk.radius().ok_or("an elliptic disk")?;
+            EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
+        }
+        Shape::Patch(patch) => EmitterShape::Patch(*patch),
+        Shape::Mesh(mesh) => match as_parallelogram(mesh) {
+            Some(parallelogram) => parallelogram,
+            None => return Ok(triangles(mesh)),
+        },
+    }))
+}
+
+fn triangles(mesh: &Mesh) -> Pieces {
+    let prims = 0..mesh.indices.len() as u32;
+    Pieces::Each(prims.map(|prim| triangle(mesh.triangle(prim), mesh.reversed)).collect())
+}
+
+/// A parallelogram whose texture is not that of a parallelogram is two triangles.
+fn with_coordinates(pieces: Pieces, mesh: Option<&Mesh>) -> Pieces {
+    match (&pieces, mesh) {
+        (Pieces::Whole(shape), Some(mesh)) if parallelogram_coordinates(mesh, shape).is_none() => triangles(mesh),
+        _ => pieces,
+    }
+}
+
+/// Where a piece lies on textures.
+fn coordinates(whole: &Shape, piece: &EmitterShape, prim: u32) -> Coordinates {
+    match (whole, piece) {
+        (Shape::Mesh(mesh), EmitterShape::Parallelogram { .. }) => {
+            Coordinates::Flat(parallelogram_coordinates(mesh, piece).unwrap_or([Vec2::ZERO, Vec2::X, Vec2::Y]))
+        }
+        (Shape::Mesh(mesh), _) => Coordinates::Flat(mesh.coordinates(prim)),
+        (shape, _) => Coordinates::Of(Box::new(shape.clone())),
+    }
+}
+
+/// Texture coordinates of three corners of a parallelogram, from which those of the fourth follow.
+fn parallelogram_coordinates(mesh: &Mesh, shape: &EmitterShape) -> Option<[Vec2; 3]> {
+    let EmitterShape::Parallelogram { a, e1, e2, .. } = shape else { return None };
+    let size = e1.length() + e2.length() + a.length();
+    let at = |corner: Vec3| {
+        let mut found = (0..2).flat_map(|prim| mesh.triangle(prim).into_iter().zip(mesh.coordinates(prim)));
+        let mut here = found.by_ref().filter(|(p, _)| (*p - corner).length() <= 8.0 * f32::EPSILON * size);
+        let (_, uv) = here.next()?;
+        here.all(|(_, other)| other == uv).then_some(uv)
+    };
+    let [uv_a, uv_1, uv_2, far] = [at(*a)?, at(*a + *e1)?, at(*a + *e2)?, at(*a + *e1 + *e2)?];
+    let closes = (uv_1 + uv_2 - uv_a - far).abs().max_element() <= 1e-5;
+    closes.then_some([uv_a, uv_1, uv_2])
+}
+
+/// The mean of a picture's luminance, by the middles of its pixels.
+fn mean_luminance(texture: &Texture, size: [u32; 2]) -> f64 {
+    let [columns, rows] = size.map(|side| side.clamp(1, FINEST));
+    let middle = |i: u32, n: u32| (i as f32 + 0.5) / n as f32;
+    let places = (0..rows).flat_map(|j| (0..columns).map(move |i| Vec2::new(middle(i, columns), middle(j, rows))));
+    let luminance = |uv: Vec2| {
+        let lanes = texture.eval(&TexturePoint { p: Vec3::ZERO, uv, n: Vec3::Z }, &Wavelengths::Rgb);
+        f64::from(srgb::luminance([0, 1, 2].map(|lane| lanes.lane(lane))))
+    };
+    places.map(luminance).sum::<f64>() / (f64::from(columns) * f64::from(rows))
+}
+
+fn triangle([a, b, c]: [Vec3; 3], reversed: bool) -> EmitterShape {
+    let (e1, e2) = (b - a, c - a);
+    let ng = unit_normal(e1, e2);
+    EmitterShape::Triangle { a, e1, e2, ng: if reversed { -ng } else { ng } }
+}
+
+/// In double precision: thin triangles have normals too.
+fn unit_normal(e1: Vec3, e2: Vec3) -> Vec3 {
+    e1.as_dvec3().cross(e2.as_dvec3()).normalize_or_zero().as_vec3()
+}
+
+/// Two triangles that make a parallelogram, as one emitter: it can be sampled by solid angle.
+fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
+    if mesh.indices.len() != 2 {
+        return None;
+    }
+    let [first, second] = [mesh.triangle(0), mesh.triangle(1)];
+    // Turn the first triangle until its corner 0 is the one that the second does not have.
+    let turn = (0..3).find(|i| !second.contains(&first[*i]))?;
+    let [a, b, c] = [first[turn], first[(turn + 1) % 3], first[(turn + 2) % 3]];
+    let far = second.into_iter().find(|p| *p != b && *p != c)?;
+    let (e1, e2) = (b - a, c - a);
+    let size = (b - a).length() + (c - a).length() + a.length();
+    let ng = unit_normal(e1, e2);
+    let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(ng) > 0.999;
+    let closes = (b + e2 - far).length() <= 4.0 * f32::EPSILON * size;
+    (closes && same_side && second.contains(&b) && second.contains(&c)).then(|| EmitterShape::Parallelogram {
+        a,
+        e1,
+        e2,
+        ng: if mesh.reversed { -ng } else { ng },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::build::shapes::rectangle;
+
+    #[test]
+    fn a_rectangle_is_one_emitter_that_shines_along_z() {
+        let Some(EmitterShape::Parallelogram { e1, e2, ng, .. }) = as_parallelogram(&rectangle()) else { panic!() };
+        assert_eq!((e1.cross(e2).length(), ng), (4.0, Vec3::Z));
+        let mut bent = rectangle();
+        bent.positions[3] = Vec3::new(-1.5, 1.0, 0.0);
+        assert!(as_parallelogram(&bent).is_none());
+    }
+}
