@@ -157,7 +157,7 @@ impl<'a> Builder<'a> {
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
             ShapeKind::Serialized { path, index, face_normals } => {
-                let normals = Normals::asked(*face_normals, false);
+                let normals = Normals::asked(*face_normals, true);
                 let mesh = self.mesh_file(read_serialized(&path.value, *index), path, normals, false)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }

@@ -87,7 +87,7 @@ pub enum ShapeKind {
         path: FileRef,
         /// Which of its meshes, from 0.
         index: u32,
-        /// Whether normals of the file are left out and each face is flat; a mesh without normals is flat anyway.
+        /// Whether normals of the file are left out and each face is flat; a mesh without normals is smoothed otherwise.
         face_normals: bool,
     },
 }

@@ -149,9 +149,7 @@ fn dirac_lights(
         let Some(sample) = light.sample(&reference, u, w) else { continue };
         let f = vertex.eval(sample.dir).0.lane(lane);
         let origin = vertex.shadow_origin(sample.dir);
-        let crosses =
-            |v: &Vertex| matches!(v, Vertex::Surface { hit, .. } if dir.dot(hit.ng) * sample.dir.dot(hit.ng) > 0.0);
-        let from = if crosses(vertex) { beyond } else { within };
+        let from = if vertex.crosses(dir, sample.dir) { beyond } else { within };
         let start = (from.inside(scene, w), from);
         if f > 0.0
             && let Some(t) = shadow::transmittance(scene, origin, sample.dir, &sample.target, start, (w, lane), tally)

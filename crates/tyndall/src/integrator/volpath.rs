@@ -301,7 +301,7 @@ impl Path {
     #[inline]
     fn inside_towards(&self, scene: &Scene, vertex: &Vertex, dir: crate::math::Vec3) -> (Inside, &Within) {
         match vertex {
-            Vertex::Surface { hit, .. } if dir.dot(hit.ng) * self.ray.dir.dot(hit.ng) > 0.0 => {
+            Vertex::Surface { hit, .. } if vertex.crosses(self.ray.dir, dir) => {
                 if scene.has_bodies() {
                     return (self.beyond.inside(scene, &self.wavelengths), &self.beyond);
                 }

@@ -54,13 +54,14 @@ pub struct Scattered {
 impl Vertex {
     /// A vertex on a surface that a ray along `dir` has hit.
     ///
-    /// Where the shading normal turns away from a ray that the true surface faces, the true normal shades: the two must
-    /// agree on the side that the path comes from, or it would change sides without changing media.
+    /// Where the shading normal of a boundary turns away from a ray that the true surface faces, the true normal shades:
+    /// the two must agree on the side that the path comes from, or it would change sides without changing media. What lets
+    /// no light through has no such trouble, and the shading normal alone decides, as in pbrt and in Mitsuba.
     #[inline]
     pub fn surface(hit: Interaction, bsdf: Bsdf, dir: Vec3) -> Self {
         let frame = hit.shading_frame();
         let wo = frame.to_local(-dir);
-        if same_side(wo.z, -dir.dot(hit.ng)) {
+        if may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
             return Self::Surface { hit, frame, bsdf, wo };
         }
         let frame = Frame::around(hit.ng);
@@ -94,7 +95,7 @@ impl Vertex {
         match self {
             Self::Surface { hit, frame, bsdf, wo } => {
                 let wi = frame.to_local(dir);
-                if !same_side(wi.z, dir.dot(hit.ng)) {
+                if !may_leave(bsdf, wi.z, dir.dot(hit.ng)) {
                     return (Lanes::ZERO, 0.0);
                 }
                 (bsdf.eval(*wo, wi), bsdf.pdf(*wo, wi))
@@ -113,11 +114,12 @@ impl Vertex {
             Self::Surface { hit, frame, bsdf, wo } => {
                 let u = Vec2::new(u, v);
                 sample_surface(hit, frame, bsdf, *wo, u_lobe, u).or_else(|| {
-                    // A mirror has no other direction to offer: where the shading normal sends it through the surface,
-                    // the true normal shades, so that no light is lost.
+                    // Clear glass has no other direction to offer: where the shading normal sends it to the wrong side of
+                    // the surface, the true normal shades, so that no light is lost.
                     let flat = Frame::around(hit.ng);
                     let wo = flat.to_local(frame.to_world(*wo));
-                    if bsdf.is_specular() { sample_surface(hit, &flat, bsdf, wo, u_lobe, u) } else { None }
+                    let retry = bsdf.is_specular() && bsdf.transmits();
+                    if retry { sample_surface(hit, &flat, bsdf, wo, u_lobe, u) } else { None }
                 })
             }
             Self::Medium { p, dir, phase } => {
@@ -136,6 +138,15 @@ impl Vertex {
         }
     }
 
+    /// Whether a ray towards `dir` leaves on the other side of a boundary than that from which one along `travel` came.
+    #[inline]
+    pub fn crosses(&self, travel: Vec3, dir: Vec3) -> bool {
+        match self {
+            Self::Surface { hit, bsdf, .. } => dir.dot(hit.ng) * travel.dot(hit.ng) > 0.0 && bsdf.transmits(),
+            Self::Medium { .. } => false,
+        }
+    }
+
     /// The origin of a shadow ray towards `dir`.
     #[inline]
     pub fn shadow_origin(&self, dir: Vec3) -> Vec3 {
@@ -146,13 +157,12 @@ impl Vertex {
     }
 }
 
-/// Draws a direction in the local space `frame`; `None` also where it would be on different sides of the shading and of
-/// the geometric normal.
+/// Draws a direction in the local space `frame`; `None` also where a boundary must not send it.
 #[inline]
 fn sample_surface(hit: &Interaction, frame: &Frame, bsdf: &Bsdf, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<Scattered> {
     let sample = bsdf.sample(wo, u_lobe, u)?;
     let dir = frame.to_world(sample.wi).normalize();
-    same_side(sample.wi.z, dir.dot(hit.ng)).then(|| Scattered {
+    may_leave(bsdf, sample.wi.z, dir.dot(hit.ng)).then(|| Scattered {
         ray: hit.spawn(dir),
         weight: sample.weight,
         pdf: sample.pdf,
@@ -162,8 +172,9 @@ fn sample_surface(hit: &Interaction, frame: &Frame, bsdf: &Bsdf, wo: Vec3, u_lob
     })
 }
 
-/// Whether a direction is on the same side of the shading and of the geometric normal: else it would leak.
+/// Whether light can come or go where the shading normal and the geometric normal see it at these cosines: on one side
+/// for both, or it would leak through a boundary.
 #[inline]
-fn same_side(local_z: f32, cos_geometric: f32) -> bool {
-    local_z * cos_geometric > 0.0
+fn may_leave(bsdf: &Bsdf, cos_shading: f32, cos_geometric: f32) -> bool {
+    cos_shading * cos_geometric > 0.0 || !bsdf.transmits()
 }
