@@ -10,22 +10,25 @@ use crate::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     pieces: Vec<EmitterShape>,
+    /// Of each piece [length²].
+    areas: Vec<f32>,
     by_area: Discrete,
 }
 
 impl Surface {
     /// `None` for a surface without area.
     pub fn new(pieces: Vec<EmitterShape>) -> Option<Self> {
-        let by_area = Discrete::from_f64(pieces.iter().map(|piece| f64::from(piece.area())))?;
-        Some(Self { pieces, by_area })
+        let areas: Vec<f32> = pieces.iter().map(EmitterShape::area).collect();
+        let by_area = Discrete::new(&areas)?;
+        Some(Self { pieces, areas, by_area })
     }
 
     /// A point, and what it weighs in a mean over the area: 1, but for curved patches, whose points are not quite uniform.
     #[inline]
     pub(super) fn sample(&self, u: Vec2) -> (Point, f32) {
-        let (piece, _, rest) = self.by_area.sample(u.x.clamp(0.0, 1.0));
-        let piece = &self.pieces[piece];
+        let (index, _, rest) = self.by_area.sample(u.x.clamp(0.0, 1.0));
+        let piece = &self.pieces[index];
         let point = piece.sample_area(Vec2::new(rest, u.y.clamp(0.0, 1.0)));
-        (point, 1.0 / (piece.area() * piece.pdf_area(point.p, point.ng)))
+        (point, 1.0 / (self.areas[index] * piece.pdf_area(point.p, point.ng)))
     }
 }
