@@ -57,6 +57,7 @@ fn geometry(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
         (census.triangles, "triangles"),
         (census.spheres, "spheres"),
         (census.disks, "disks"),
+        (census.cylinders, "cylinders"),
         (census.patches, "patches"),
         (census.instances, "instances"),
     ];

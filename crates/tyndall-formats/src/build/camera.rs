@@ -99,14 +99,8 @@ impl<'a> Builder<'a> {
 
     /// The surface of a shape that is not part of the scene.
     fn surface_of(&mut self, shape: &'a ShapeDesc) -> Option<Surface> {
-        match self.surface_pieces(shape)? {
-            Ok(pieces) => Surface::new(pieces)
-                .or_else(|| self.fail(SceneError::at(shape.span, "this shape has no area to be seen"))),
-            Err(what) => self.fail(
-                SceneError::not_yet(shape.span, format!("{what} as a target is not known yet"))
-                    .help("use a mesh of triangles"),
-            ),
-        }
+        let pieces = self.surface_pieces(shape)?;
+        Surface::new(pieces).or_else(|| self.fail(SceneError::at(shape.span, "this shape has no area to be seen")))
     }
 
     fn batch(

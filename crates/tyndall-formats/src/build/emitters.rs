@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use tyndall::{
-    light::{AreaLight, Beam, Coordinates, EmitterShape, Light, LightId, Pattern},
+    light::{AreaLight, Beam, Coordinates, EmitterShape, Light, LightId, Pattern, Revolved},
     math::{Vec2, Vec3},
     scene::Emission,
-    shape::{Geometry, Mesh, ObjectId, Shape},
+    shape::{Geometry, Mesh, ObjectId, Shape, Turn},
     spectrum::{Spectrum, Wavelengths, srgb},
     texture::{Texture, TexturePoint},
 };
@@ -65,10 +65,7 @@ impl Builder<'_> {
             Some((_, Some(opacity))) => Ok(opacity as f32),
             Some((opacity, None)) => Err(self.texture(opacity, Measure::Share)?),
         };
-        let pieces = match pieces(geometry, shining.object) {
-            Ok(pieces) => pieces,
-            Err(what) => return self.cannot_shine(desc, what),
-        };
+        let pieces = pieces(geometry, shining.object);
         if desc.spread == Spread::Straight {
             return self.beams(geometry, shining, pieces, &radiance, lights);
         }
@@ -121,7 +118,10 @@ impl Builder<'_> {
     ) -> Option<Emission> {
         let faceted = !matches!(geometry.shape(shining.object), Shape::Mesh(mesh) if !mesh.normals.is_empty());
         let shapes = pieces.shapes();
-        if !faceted || shapes.iter().any(|shape| shape.normal().is_none()) {
+        let curved = |shape: &EmitterShape| {
+            matches!(shape, EmitterShape::Sphere { .. } | EmitterShape::Patch(_) | EmitterShape::Revolved(_))
+        };
+        if !faceted || shapes.iter().any(curved) {
             let error = SceneError::not_yet(shining.light.span, "only flat faces can shine straight ahead yet");
             return self.fail(error.help("use a rectangle, a disk, or a mesh with \"face_normals\""));
         }
@@ -132,12 +132,6 @@ impl Builder<'_> {
         let beam = |shape: &EmitterShape| Light::Beam(Beam { shape: *shape, exitance: exitance.clone(), luminance });
         lights.extend(shapes.iter().map(beam));
         Some(Emission::None)
-    }
-
-    fn cannot_shine<T>(&mut self, desc: &AreaLightDesc, what: &str) -> Option<T> {
-        self.fail(
-            SceneError::at(desc.span, format!("light from {what} is not known yet")).help("use a mesh of triangles"),
-        )
     }
 }
 
@@ -188,23 +182,26 @@ impl Pieces {
     }
 }
 
-/// The surface of an object; or what it is, if it cannot be sampled.
-pub(super) fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str> {
-    Ok(Pieces::Whole(match geometry.shape(object) {
-        Shape::Sphere(sphere) => {
-            let (centre, radius) = sphere.round().ok_or("an ellipsoid")?;
-            EmitterShape::Sphere { centre, radius, inward: sphere.reversed }
-        }
-        Shape::Disk(disk) => {
-            let radius = disk.radius().ok_or("an elliptic disk")?;
-            EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
-        }
+/// The surface of an object.
+pub(super) fn pieces(geometry: &Geometry, object: ObjectId) -> Pieces {
+    Pieces::Whole(match geometry.shape(object) {
+        Shape::Sphere(sphere) => match sphere.round() {
+            Some((centre, radius)) => EmitterShape::Sphere { centre, radius, inward: sphere.reversed },
+            None => EmitterShape::Revolved(Revolved::sphere(sphere)),
+        },
+        Shape::Disk(disk) => match disk.radius().filter(|_| disk.turn == Turn::FULL) {
+            Some(radius) => {
+                EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
+            }
+            None => EmitterShape::Revolved(Revolved::disk(disk)),
+        },
+        Shape::Cylinder(cylinder) => EmitterShape::Revolved(Revolved::cylinder(cylinder)),
         Shape::Patch(patch) => EmitterShape::Patch(*patch),
         Shape::Mesh(mesh) => match as_parallelogram(mesh) {
             Some(parallelogram) => parallelogram,
-            None => return Ok(triangles(mesh)),
+            None => return triangles(mesh),
         },
-    }))
+    })
 }
 
 fn triangles(mesh: &Mesh) -> Pieces {
@@ -226,7 +223,7 @@ fn coordinates(whole: &Shape, piece: &EmitterShape, prim: u32) -> Coordinates {
         (Shape::Mesh(mesh), EmitterShape::Parallelogram { .. }) => {
             Coordinates::Flat(parallelogram_coordinates(mesh, piece).unwrap_or([Vec2::ZERO, Vec2::X, Vec2::Y]))
         }
-        (Shape::Mesh(mesh), _) => Coordinates::Flat(mesh.coordinates(prim)),
+        (Shape::Mesh(mesh), _) => Coordinates::Flat(mesh.corner_uvs(prim)),
         (shape, _) => Coordinates::Of(Box::new(shape.clone())),
     }
 }
@@ -236,7 +233,7 @@ fn parallelogram_coordinates(mesh: &Mesh, shape: &EmitterShape) -> Option<[Vec2;
     let EmitterShape::Parallelogram { a, e1, e2, .. } = shape else { return None };
     let size = e1.length() + e2.length() + a.length();
     let at = |corner: Vec3| {
-        let mut found = (0..2).flat_map(|prim| mesh.triangle(prim).into_iter().zip(mesh.coordinates(prim)));
+        let mut found = (0..2).flat_map(|prim| mesh.triangle(prim).into_iter().zip(mesh.corner_uvs(prim)));
         let mut here = found.by_ref().filter(|(p, _)| (*p - corner).length() <= 8.0 * f32::EPSILON * size);
         let (_, uv) = here.next()?;
         here.all(|(_, other)| other == uv).then_some(uv)

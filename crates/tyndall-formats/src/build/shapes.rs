@@ -4,21 +4,23 @@ use std::collections::HashMap;
 
 use tyndall::{
     light::{EmitterShape, Light},
-    math::{Vec2, Vec3},
+    math::{Transform, Vec2, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
-    shape::{Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, ShapeError, Sphere},
+    shape::{Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, ShapeError, Sphere},
+    texture::TexturePoint,
 };
 
 use super::{
     Builder,
     emitters::{Pieces, Shining, pieces},
     material_id, medium_id,
+    spectra::Measure,
 };
 use crate::{
-    desc::{FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
+    desc::{DisplacementDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
     error::SceneError,
-    mesh::{MeshError, TriangleMesh, read_obj, read_ply, read_serialized},
+    mesh::{MeshError, TriangleMesh, displace, read_obj, read_ply, read_serialized, subdivide},
 };
 
 /// All shapes of a scene.
@@ -91,21 +93,13 @@ impl<'a> Builder<'a> {
         }
         let mut meters = HashMap::new();
         for (index, objects) in objects {
-            let pieces: Result<Vec<_>, _> = objects.map(|object| pieces(&geometry, ObjectId(object))).collect();
-            match pieces {
-                Ok(pieces) => meters.insert(index, pieces.iter().flat_map(Pieces::shapes).copied().collect()),
-                Err(what) => {
-                    let message = format!("a meter on {what} is not known yet");
-                    let error = SceneError::not_yet(desc.shapes[index].span, message);
-                    return self.fail(error.help("use a mesh of triangles"));
-                }
-            };
+            meters.insert(index, surfaces(&geometry, objects));
         }
         Some(Shapes { geometry, objects: gathered.objects, lights, meters })
     }
 
-    /// The surface of a shape on its own; or what it is, if it cannot be sampled.
-    pub(super) fn surface_pieces(&mut self, shape: &'a ShapeDesc) -> Option<Result<Vec<EmitterShape>, &'static str>> {
+    /// The surface of a shape on its own.
+    pub(super) fn surface_pieces(&mut self, shape: &'a ShapeDesc) -> Option<Vec<EmitterShape>> {
         let mut gathered = Gathered::default();
         self.shape(&mut gathered, shape)?;
         let objects = 0..gathered.objects.len() as u32;
@@ -113,8 +107,7 @@ impl<'a> Builder<'a> {
             Ok(geometry) => geometry,
             Err(e) => return self.fail(SceneError::at(shape.span, e.to_string())),
         };
-        let pieces: Result<Vec<_>, _> = objects.map(|object| pieces(&geometry, ObjectId(object))).collect();
-        Some(pieces.map(|pieces| pieces.iter().flat_map(Pieces::shapes).copied().collect()))
+        Some(surfaces(&geometry, objects))
     }
 
     fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> GroupId {
@@ -138,12 +131,17 @@ impl<'a> Builder<'a> {
         let reversed = desc.reverse_orientation;
         let builder = &mut gathered.builder;
         let added = match &desc.kind {
-            ShapeKind::Sphere { radius } => {
-                vec![builder.add_sphere(Sphere::new(Vec3::ZERO, *radius as f32), &transform, reversed)]
+            ShapeKind::Sphere { radius, part } => {
+                let sphere = Sphere::new(Vec3::ZERO, *radius as f32).cut(*part);
+                vec![builder.add_sphere(sphere, &transform, reversed)]
             }
-            ShapeKind::Disk { height, radius, inner_radius, mapping } => {
-                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32).mapped(*mapping);
-                vec![builder.add_disk(disk, &transform, reversed)]
+            ShapeKind::Disk { height, radius, inner_radius, turn, mapping } => {
+                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32);
+                vec![builder.add_disk(disk.cut(*turn).mapped(*mapping), &transform, reversed)]
+            }
+            ShapeKind::Cylinder { radius, heights, turn } => {
+                let cylinder = Cylinder::new(*radius as f32, heights.map(|z| z as f32), *turn);
+                vec![builder.add_cylinder(cylinder, &transform, reversed)]
             }
             ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],
             ShapeKind::Cube => vec![builder.add_mesh(cube(), &transform, reversed)],
@@ -151,10 +149,22 @@ impl<'a> Builder<'a> {
             ShapeKind::BilinearMesh(patches) => {
                 patches_of(patches).map(|patch| builder.add_patch(patch, &transform, reversed)).collect()
             }
-            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_ply(&path.value), path, normals, *flip_tex_coords)?;
+                let mesh = match displacement {
+                    None => read_ply(&path.value),
+                    Some(displacement) => self.displaced(path, displacement, &transform)?,
+                };
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
+            }
+            ShapeKind::Subdivision { positions, indices, levels } => {
+                let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();
+                match subdivide(&positions, indices, *levels) {
+                    // Its normals are against the winding.
+                    Ok(mesh) => vec![builder.add_mesh(mesh_of(mesh), &transform, !reversed)],
+                    Err(problem) => return self.fail(SceneError::at(desc.span, format!("this surface: {problem}"))),
+                }
             }
             ShapeKind::Serialized { path, index, face_normals } => {
                 let normals = Normals::asked(*face_normals, true);
@@ -179,7 +189,11 @@ impl<'a> Builder<'a> {
     /// A body with a priority must be something that light can enter, that does not shine, and whose outside is left to others.
     fn check_priority(&mut self, desc: &ShapeDesc) -> Option<()> {
         let Some(priority) = desc.priority else { return Some(()) };
-        let kind = self.desc.material(desc.material.value).map(|material| &material.kind);
+        let kind = |id| self.desc.material(id).map(|material| &material.kind);
+        let kind = match kind(desc.material.value) {
+            Some(MaterialKind::Embossed { of, .. }) => kind(of.value),
+            even => even,
+        };
         if !matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::Interface) | None) {
             return self.fail(
                 SceneError::at(priority.span, "only a body that light can enter has a priority")
@@ -253,9 +267,9 @@ impl<'a> Builder<'a> {
         flip_tex_coords: bool,
     ) -> Option<Mesh> {
         match mesh {
-            Ok(mesh) => {
+            Ok(mut mesh) => {
                 let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
-                let mut uvs = mesh.uvs.unwrap_or_default();
+                let mut uvs = mesh.uvs.take().unwrap_or_default();
                 if flip_tex_coords {
                     for uv in &mut uvs {
                         uv.y = 1.0 - uv.y;
@@ -263,13 +277,46 @@ impl<'a> Builder<'a> {
                 }
                 let normals = match normals {
                     Normals::Flat => Vec::new(),
-                    Normals::AsGiven | Normals::Smooth => mesh.normals.or(smooth).unwrap_or_default(),
+                    Normals::AsGiven | Normals::Smooth => mesh.normals.take().or(smooth).unwrap_or_default(),
                 };
-                Some(Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false })
+                Some(mesh_of(TriangleMesh { normals: Some(normals), uvs: Some(uvs), ..mesh }))
             }
             Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
         }
     }
+
+    /// A file's mesh with its vertices moved; `None` if the texture of the heights is wrong.
+    fn displaced(
+        &mut self,
+        path: &FileRef,
+        displacement: &DisplacementDesc,
+        transform: &Transform,
+    ) -> Option<Result<TriangleMesh, MeshError>> {
+        let texture = self.texture(&displacement.height, Measure::Number)?;
+        // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
+        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO });
+        let length = |a: Vec3, b: Vec3| {
+            let along = transform.matrix.as_dmat4().transform_vector3(b.as_dvec3() - a.as_dvec3());
+            along.length()
+        };
+        let displace = |mesh| {
+            displace(mesh, length, displacement.edge_length, height)
+                .map_err(|problem| MeshError { path: path.value.clone(), problem })
+        };
+        Some(read_ply(&path.value).and_then(displace))
+    }
+}
+
+/// The surface of several objects.
+fn surfaces(geometry: &Geometry, objects: std::ops::Range<u32>) -> Vec<EmitterShape> {
+    let pieces: Vec<Pieces> = objects.map(|object| pieces(geometry, ObjectId(object))).collect();
+    pieces.iter().flat_map(Pieces::shapes).copied().collect()
+}
+
+fn mesh_of(mesh: TriangleMesh) -> Mesh {
+    let TriangleMesh { positions, indices, normals, uvs } = mesh;
+    let (normals, uvs) = (normals.unwrap_or_default(), uvs.unwrap_or_default());
+    Mesh { positions, indices, normals, uvs, reversed: false }
 }
 
 fn inline_mesh(mesh: &MeshDesc) -> Mesh {

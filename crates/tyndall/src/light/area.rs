@@ -5,7 +5,7 @@
 
 use std::f32::consts::PI;
 
-use super::{LightSample, Pattern, Reference, Target};
+use super::{LightSample, Pattern, Reference, Revolved, Target};
 use crate::{
     math::{Bounds, Frame, Vec2, Vec3, rounding::gamma},
     sampling::{spherical_rectangle::SphericalRectangle, warp},
@@ -79,6 +79,8 @@ pub enum EmitterShape {
     },
     /// A bilinear patch.
     Patch(Patch),
+    /// A cylinder, a part of a disk or of a sphere, an ellipsoid.
+    Revolved(Revolved),
 }
 
 /// A point on an emitter: place, unit normal, bound on the rounding error.
@@ -98,6 +100,7 @@ impl EmitterShape {
             Self::Sphere { radius, .. } => 4.0 * PI * radius * radius,
             Self::Disk { radius, inner, .. } => PI * (radius * radius - inner * inner),
             Self::Patch(patch) => patch.area(),
+            Self::Revolved(revolved) => revolved.area(),
         }
     }
 
@@ -113,6 +116,8 @@ impl EmitterShape {
     pub fn projected_area(&self) -> f32 {
         match *self {
             Self::Sphere { radius, .. } => PI * radius * radius,
+            // Of a surface that bends round, no more than half faces one way.
+            Self::Revolved(revolved) if revolved.normal().is_none() => 0.5 * revolved.area(),
             _ => self.area(),
         }
     }
@@ -121,6 +126,7 @@ impl EmitterShape {
     pub fn normal(&self) -> Option<Vec3> {
         match *self {
             Self::Triangle { ng, .. } | Self::Parallelogram { ng, .. } | Self::Disk { ng, .. } => Some(ng),
+            Self::Revolved(revolved) => revolved.normal(),
             Self::Sphere { .. } | Self::Patch(_) => None,
         }
     }
@@ -136,6 +142,7 @@ impl EmitterShape {
                 Bounds { min: centre - reach, max: centre + reach }
             }
             Self::Patch(patch) => Bounds::of(patch.corners),
+            Self::Revolved(revolved) => revolved.bounds(),
         }
     }
 
@@ -144,6 +151,7 @@ impl EmitterShape {
         match *self {
             Self::Triangle { a, ng, .. } | Self::Parallelogram { a, ng, .. } => Some((p - a).dot(ng)),
             Self::Disk { centre, ng, .. } => Some((p - centre).dot(ng)),
+            Self::Revolved(revolved) => revolved.normal().map(|ng| (p - revolved.centre()).dot(ng)),
             Self::Sphere { .. } | Self::Patch(_) => None,
         }
     }
@@ -157,7 +165,7 @@ impl EmitterShape {
                 let square = n.length_squared();
                 [from.cross(e2.as_dvec3()), e1.as_dvec3().cross(from)].map(|v| (v.dot(n) / square) as f32)
             }
-            Self::Sphere { .. } | Self::Disk { .. } | Self::Patch(_) => [0.0; 2],
+            Self::Sphere { .. } | Self::Disk { .. } | Self::Patch(_) | Self::Revolved(_) => [0.0; 2],
         }
     }
 
@@ -173,7 +181,7 @@ impl EmitterShape {
                 let d2 = centre.distance_squared(p);
                 d2 <= radius * radius && d2 >= inner * inner
             }
-            Self::Sphere { .. } | Self::Patch(_) => false,
+            Self::Sphere { .. } | Self::Patch(_) | Self::Revolved(_) => false,
         }
     }
 
@@ -183,6 +191,7 @@ impl EmitterShape {
             Self::Parallelogram { a, e1, e2, .. } => a + (e1 + e2) * 0.5,
             Self::Sphere { centre, .. } | Self::Disk { centre, .. } => centre,
             Self::Patch(patch) => patch.corners.iter().sum::<Vec3>() * 0.25,
+            Self::Revolved(revolved) => revolved.centre(),
         }
     }
 
@@ -211,6 +220,7 @@ impl EmitterShape {
                 let (p, ng, error) = patch.sample_area(u);
                 Point { p, ng, error }
             }
+            Self::Revolved(revolved) => revolved.sample(u),
         }
     }
 
@@ -218,6 +228,7 @@ impl EmitterShape {
     pub(crate) fn pdf_area(&self, p: Vec3, ng: Vec3) -> f32 {
         match self {
             Self::Patch(patch) => patch.pdf_area(p, ng),
+            Self::Revolved(revolved) => revolved.pdf(p),
             _ => 1.0 / self.area(),
         }
     }

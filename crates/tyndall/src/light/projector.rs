@@ -112,6 +112,7 @@ mod tests {
             scale: 1.0,
             invert: false,
             grey: Grey::Mean,
+            least: 0.0,
             most: f32::MAX,
         })
     }

@@ -29,9 +29,9 @@ impl Mesh {
         self.indices[prim as usize].map(|i| self.positions[i as usize])
     }
 
-    /// The texture coordinates of a triangle's vertices.
+    /// The parameters of the corners of a triangle.
     #[inline]
-    pub fn coordinates(&self, prim: u32) -> [Vec2; 3] {
+    pub fn corner_uvs(&self, prim: u32) -> [Vec2; 3] {
         if self.uvs.is_empty() {
             return [Vec2::ZERO, Vec2::X, Vec2::ONE];
         }
@@ -82,7 +82,7 @@ impl Mesh {
             let [n0, n1, n2] = corners.map(|i| self.normals[i].as_dvec3());
             n0 * (1.0 - b1 - b2) + n1 * b1 + n2 * b2
         };
-        let [uv0, uv1, uv2] = self.coordinates(prim);
+        let [uv0, uv1, uv2] = self.corner_uvs(prim);
         // Double precision leaves 2⁻⁵² of the longest edge, times the aspect of the triangle when the distance to its
         // plane is asked for: this is good up to an aspect of 2¹⁸.
         let longest = e1.abs().max_element().max(e2.abs().max_element());

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
-use tyndall::shape::DiskMapping;
+use tyndall::shape::{DiskMapping, Turn};
 
 use super::{parse, scene, world};
 use crate::desc::{
@@ -37,10 +37,16 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
         LightSource "point" LightSource "spot" LightSource "distant" LightSource "infinite"
         LightSource "infinite" "string filename" "sky.exr" "float scale" 2"#,
     );
-    assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 1.0 });
+    assert_eq!(desc.shapes[0].kind, ShapeKind::sphere(1.0));
     assert_eq!(
         desc.shapes[1].kind,
-        ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, mapping: DiskMapping::AzimuthInward }
+        ShapeKind::Disk {
+            height: 0.0,
+            radius: 1.0,
+            inner_radius: 0.0,
+            turn: Turn::FULL,
+            mapping: DiskMapping::AzimuthInward
+        }
     );
     // The material of shapes before any Material comes first.
     let [default, diffuse, conductor, dielectric, interface, pane, leaf] = &desc.materials[..] else { panic!() };
@@ -195,7 +201,7 @@ fn attribute_sets_defaults_that_a_shape_may_override_and_need_not_use() {
         Shape "sphere""#,
     );
     let radii: Vec<_> = desc.shapes.iter().map(|s| s.kind.clone()).collect();
-    assert_eq!(radii, [3.0, 4.0, 1.0].map(|radius| ShapeKind::Sphere { radius }));
+    assert_eq!(radii, [3.0, 4.0, 1.0].map(ShapeKind::sphere));
 }
 
 #[test]
