@@ -190,7 +190,7 @@ fn an_even_sky_behind_a_portal_is_a_shining_square() {
 fn patterned(world: &mut World, texture: Texture, opacity: Texture) {
     let shape = EmitterShape::Parallelogram { a: Vec3::new(-0.5, 1.0, -0.5), e1: Vec3::X, e2: Vec3::Z, ng: -Vec3::Y };
     let coordinates = Coordinates::Flat([Vec2::ZERO, Vec2::X, Vec2::Y]);
-    let pattern = Some(Box::new(Pattern { texture, opacity: opacity.clone(), coordinates }));
+    let pattern = Some(Box::new(Pattern { texture, opacity: opacity.clone(), coordinates, part: None }));
     let hole = world.part(tyndall::material::Material::Hole);
     let black = world.part(diffuse(0.0));
     let material = tyndall::material::Material::Mix { of: [hole, black], amount: opacity };
@@ -249,7 +249,7 @@ fn light_samples_see_the_texture_where_rays_see_it() {
     let board = Mapping2::Uv(glam::Affine2::from_scale(Vec2::new(10.0, 7.0)));
     let by = Arc::new(Weight::Checkerboard(Checkerboard::Plane(board)));
     let texture = Texture::Mix { of: Arc::new([0.5.into(), 2.0.into()]), by };
-    let pattern = Pattern { texture, opacity: 1.0.into(), coordinates: Coordinates::Of(Box::new(whole)) };
+    let pattern = Pattern { texture, opacity: 1.0.into(), coordinates: Coordinates::Of(Box::new(whole)), part: None };
     let light = AreaLight {
         pattern: Some(Box::new(pattern)),
         ..area(EmitterShape::Sphere { centre, radius, inward: false }, false)

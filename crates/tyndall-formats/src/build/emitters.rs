@@ -6,9 +6,9 @@ use tyndall::{
     light::{AreaLight, Beam, Coordinates, EmitterShape, Light, LightId, Pattern, Revolved},
     math::{Vec2, Vec3},
     scene::Emission,
-    shape::{Geometry, Mesh, ObjectId, Shape, Turn},
+    shape::{Geometry, Hit, Mesh, ObjectId, Shape, Turn},
     spectrum::{Spectrum, Wavelengths, srgb},
-    texture::{Texture, TexturePoint},
+    texture::{Part, Texture, TexturePoint},
 };
 
 use super::{Builder, spectra::Measure};
@@ -69,12 +69,11 @@ impl Builder<'_> {
         if desc.spread == Spread::Straight {
             return self.beams(geometry, shining, pieces, &radiance, lights);
         }
-        let mesh = match geometry.shape(shining.object) {
-            Shape::Mesh(mesh) => Some(mesh),
-            _ => None,
+        let pieces = match geometry.shape(shining.object) {
+            // Textures know triangles, and no parallelograms.
+            Shape::Mesh(mesh) if texture.is_some() || opacity.is_err() => triangles(mesh),
+            _ => pieces,
         };
-        let varies = texture.is_some() || opacity.is_err();
-        let pieces = if varies { with_coordinates(pieces, mesh) } else { pieces };
         let area: f64 = pieces.shapes().iter().map(|piece| f64::from(piece.area())).sum();
         if let Some(power) = desc.power {
             let mean = match &texture {
@@ -94,15 +93,16 @@ impl Builder<'_> {
         let first = LightId(lights.len() as u32);
         let each = matches!(pieces, Pieces::Each(_));
         for (prim, shape) in pieces.shapes().iter().enumerate() {
-            let mut part = 1.0;
+            let mut share = 1.0;
             if desc.power.is_some() && shining.by_face {
                 // A parallelogram is two faces.
                 let faces = if matches!(shape, EmitterShape::Parallelogram { .. }) { 2.0 } else { 1.0 };
-                part = faces / shape.area();
+                share = faces / shape.area();
             }
-            let coordinates = || coordinates(geometry.shape(shining.object), shape, prim as u32);
+            let part = Part { object: shining.object.0, prim: prim as u32, instance: Hit::NO_INSTANCE };
+            let lies = || (coordinates(geometry.shape(shining.object), part.prim), part);
             let fineness = FINENESS[usize::from(each)];
-            lights.push(Light::Area(emitted.of(*shape, part, desc.two_sided, coordinates, fineness)));
+            lights.push(Light::Area(emitted.of(*shape, share, desc.two_sided, lies, fineness)));
         }
         Some(if each { Emission::EachPrimitive(first) } else { Emission::Whole(first) })
     }
@@ -136,24 +136,26 @@ impl Builder<'_> {
 }
 
 impl Emitted {
-    /// The light of a piece that has `part` of the radiance.
+    /// The light of a piece that has a `share` of the radiance.
     fn of(
         &self,
         shape: EmitterShape,
-        part: f32,
+        share: f32,
         two_sided: bool,
-        coordinates: impl FnOnce() -> Coordinates,
+        lies: impl FnOnce() -> (Coordinates, Part),
         fineness: u32,
     ) -> AreaLight {
-        let radiance = self.radiance.clone().scaled(part);
+        let radiance = self.radiance.clone().scaled(share);
         let mut luminance = radiance.luminance();
         let opacity = *self.opacity.as_ref().unwrap_or(&1.0);
         let varies = self.texture.is_some() || self.opacity.is_err();
         let pattern = varies.then(|| {
+            let (coordinates, part) = lies();
             Box::new(Pattern {
                 texture: self.texture.clone().unwrap_or_else(|| 1.0.into()),
                 opacity: self.opacity.as_ref().err().cloned().unwrap_or_else(|| 1.0.into()),
-                coordinates: coordinates(),
+                coordinates,
+                part: Some(part),
             })
         });
         if let Some(pattern) = &pattern {
@@ -209,38 +211,12 @@ fn triangles(mesh: &Mesh) -> Pieces {
     Pieces::Each(prims.map(|prim| triangle(mesh.triangle(prim), mesh.reversed)).collect())
 }
 
-/// A parallelogram whose texture is not that of a parallelogram is two triangles.
-fn with_coordinates(pieces: Pieces, mesh: Option<&Mesh>) -> Pieces {
-    match (&pieces, mesh) {
-        (Pieces::Whole(shape), Some(mesh)) if parallelogram_coordinates(mesh, shape).is_none() => triangles(mesh),
-        _ => pieces,
-    }
-}
-
 /// Where a piece lies on textures.
-fn coordinates(whole: &Shape, piece: &EmitterShape, prim: u32) -> Coordinates {
-    match (whole, piece) {
-        (Shape::Mesh(mesh), EmitterShape::Parallelogram { .. }) => {
-            Coordinates::Flat(parallelogram_coordinates(mesh, piece).unwrap_or([Vec2::ZERO, Vec2::X, Vec2::Y]))
-        }
-        (Shape::Mesh(mesh), _) => Coordinates::Flat(mesh.corner_uvs(prim)),
-        (shape, _) => Coordinates::Of(Box::new(shape.clone())),
+fn coordinates(whole: &Shape, prim: u32) -> Coordinates {
+    match whole {
+        Shape::Mesh(mesh) => Coordinates::Flat(mesh.corner_uvs(prim)),
+        shape => Coordinates::Of(Box::new(shape.clone())),
     }
-}
-
-/// Texture coordinates of three corners of a parallelogram, from which those of the fourth follow.
-fn parallelogram_coordinates(mesh: &Mesh, shape: &EmitterShape) -> Option<[Vec2; 3]> {
-    let EmitterShape::Parallelogram { a, e1, e2, .. } = shape else { return None };
-    let size = e1.length() + e2.length() + a.length();
-    let at = |corner: Vec3| {
-        let mut found = (0..2).flat_map(|prim| mesh.triangle(prim).into_iter().zip(mesh.corner_uvs(prim)));
-        let mut here = found.by_ref().filter(|(p, _)| (*p - corner).length() <= 8.0 * f32::EPSILON * size);
-        let (_, uv) = here.next()?;
-        here.all(|(_, other)| other == uv).then_some(uv)
-    };
-    let [uv_a, uv_1, uv_2, far] = [at(*a)?, at(*a + *e1)?, at(*a + *e2)?, at(*a + *e1 + *e2)?];
-    let closes = (uv_1 + uv_2 - uv_a - far).abs().max_element() <= 1e-5;
-    closes.then_some([uv_a, uv_1, uv_2])
 }
 
 /// The mean of a picture's luminance, by the middles of its pixels.
@@ -249,7 +225,7 @@ fn mean_luminance(texture: &Texture, size: [u32; 2]) -> f64 {
     let middle = |i: u32, n: u32| (i as f32 + 0.5) / n as f32;
     let places = (0..rows).flat_map(|j| (0..columns).map(move |i| Vec2::new(middle(i, columns), middle(j, rows))));
     let luminance = |uv: Vec2| {
-        let lanes = texture.eval(&TexturePoint { p: Vec3::ZERO, uv, n: Vec3::Z }, &Wavelengths::Rgb);
+        let lanes = texture.eval(&TexturePoint { p: Vec3::ZERO, uv, n: Vec3::Z, part: None }, &Wavelengths::Rgb);
         f64::from(srgb::luminance([0, 1, 2].map(|lane| lanes.lane(lane))))
     };
     places.map(luminance).sum::<f64>() / (f64::from(columns) * f64::from(rows))

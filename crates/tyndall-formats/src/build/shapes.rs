@@ -15,6 +15,7 @@ use super::{
     Builder,
     emitters::{Pieces, Shining, pieces},
     material_id, medium_id,
+    painted::Painting,
     spectra::Measure,
 };
 use crate::{
@@ -38,6 +39,7 @@ struct Gathered<'a> {
     builder: GeometryBuilder,
     objects: Vec<Object>,
     emitters: Vec<Shining<'a>>,
+    painting: Painting,
 }
 
 /// The normals of a mesh from a file.
@@ -86,6 +88,7 @@ impl<'a> Builder<'a> {
             Ok(geometry) => geometry,
             Err(e) => return self.fail(SceneError::new(e.to_string())),
         };
+        self.paint(&geometry, gathered.painting);
         let mut lights = Vec::new();
         for shining in &gathered.emitters {
             let emission = self.emitters(&geometry, shining, &mut lights)?;
@@ -151,10 +154,13 @@ impl<'a> Builder<'a> {
             }
             ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = match displacement {
-                    None => read_ply(&path.value),
+                let mut mesh = match displacement {
+                    None => self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)),
                     Some(displacement) => self.displaced(path, displacement, &transform)?,
                 };
+                if let Ok(mesh) = &mut mesh {
+                    self.keep_colours(mesh, gathered.objects.len() as u32, &mut gathered.painting);
+                }
                 let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
@@ -168,12 +174,14 @@ impl<'a> Builder<'a> {
             }
             ShapeKind::Serialized { path, index, face_normals } => {
                 let normals = Normals::asked(*face_normals, true);
-                let mesh = self.mesh_file(read_serialized(&path.value, *index), path, normals, false)?;
+                let mesh = self.meshes.get((path.value.clone(), *index), || read_serialized(&path.value, *index));
+                let mesh = self.mesh_file(mesh, path, normals, false)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
             ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_obj(&path.value), path, normals, *flip_tex_coords)?;
+                let mesh = self.meshes.get((path.value.clone(), 0), || read_obj(&path.value));
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
@@ -294,7 +302,7 @@ impl<'a> Builder<'a> {
     ) -> Option<Result<TriangleMesh, MeshError>> {
         let texture = self.texture(&displacement.height, Measure::Number)?;
         // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
-        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO });
+        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO, part: None });
         let length = |a: Vec3, b: Vec3| {
             let along = transform.matrix.as_dmat4().transform_vector3(b.as_dvec3() - a.as_dvec3());
             along.length()
@@ -303,7 +311,7 @@ impl<'a> Builder<'a> {
             displace(mesh, length, displacement.edge_length, height)
                 .map_err(|problem| MeshError { path: path.value.clone(), problem })
         };
-        Some(read_ply(&path.value).and_then(displace))
+        Some(self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)).and_then(displace))
     }
 }
 
@@ -314,7 +322,7 @@ fn surfaces(geometry: &Geometry, objects: std::ops::Range<u32>) -> Vec<EmitterSh
 }
 
 fn mesh_of(mesh: TriangleMesh) -> Mesh {
-    let TriangleMesh { positions, indices, normals, uvs } = mesh;
+    let TriangleMesh { positions, indices, normals, uvs, .. } = mesh;
     let (normals, uvs) = (normals.unwrap_or_default(), uvs.unwrap_or_default());
     Mesh { positions, indices, normals, uvs, reversed: false }
 }

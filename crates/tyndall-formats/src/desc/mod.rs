@@ -26,6 +26,7 @@ mod settings;
 mod shape;
 mod spectrum;
 mod texture;
+mod uses;
 
 use std::path::PathBuf;
 

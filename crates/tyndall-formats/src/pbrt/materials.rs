@@ -16,7 +16,7 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 9] = [
+const MATERIALS: [&str; 10] = [
     "coatedconductor",
     "coateddiffuse",
     "conductor",
@@ -25,9 +25,10 @@ const MATERIALS: [&str; 9] = [
     "diffusetransmission",
     "interface",
     "mix",
+    "subsurface",
     "thindielectric",
 ];
-const LATER_MATERIALS: [&str; 3] = ["hair", "measured", "subsurface"];
+const LATER_MATERIALS: [&str; 2] = ["hair", "measured"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -44,6 +45,7 @@ impl Reader {
         let p = self.params("material", &mut s, &defaults);
         let desc = self.material_of(s.whole, None, &name, p);
         let id = MaterialId(self.materials.push(s.whole, desc));
+        self.fillings.settle(id);
         self.state.now.material = Some(Spanned::new(id, s.whole));
     }
 
@@ -59,7 +61,7 @@ impl Reader {
         }
         let kind = kind.unwrap_or(Spanned::new("interface".into(), name.span));
         let desc = self.material_of(s.whole, Some(name.value.to_string()), &kind, p);
-        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(drop));
+        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(|id| r.fillings.settle(MaterialId(id))));
     }
 
     pub(super) fn use_material(&mut self, name: &Spanned<Cow<'_, str>>) {
@@ -84,6 +86,7 @@ impl Reader {
             "coateddiffuse" => coated_diffuse(&mut p, &self.textures),
             "coatedconductor" => coated_conductor(&mut p, &self.textures),
             "mix" => self.mix(&mut p),
+            "subsurface" => self.subsurface(span, &mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -248,9 +251,9 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
 }
 
 /// The names of a roughness: along both tangents, along the first, along the second.
-const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
+pub(super) const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
 
-fn roughness(p: &mut Params, textures: &Textures, [both, u, v]: [&'static str; 3]) -> RoughnessDesc {
+pub(super) fn roughness(p: &mut Params, textures: &Textures, [both, u, v]: [&'static str; 3]) -> RoughnessDesc {
     let smooth = Spanned::new(Varying::constant(0.0), p.span);
     let both = p.amount(both, textures).unwrap_or(smooth);
     RoughnessDesc {

@@ -9,7 +9,7 @@ use crate::{
     math::{Ray, Vec2, Vec3},
     shape::Shape,
     spectrum::{Lanes, Spectrum, Wavelengths, srgb},
-    texture::{Texture, TexturePoint},
+    texture::{Part, Texture, TexturePoint},
 };
 
 /// What varies over an emitter.
@@ -21,6 +21,8 @@ pub struct Pattern {
     pub opacity: Texture,
     /// Its surface parameters.
     pub coordinates: Coordinates,
+    /// Whose surface it is, if it is that of a shape of the scene.
+    pub part: Option<Part>,
 }
 
 /// Surface parameters of an emitter.
@@ -57,7 +59,7 @@ impl Pattern {
                 surface.parameters(&Ray::new(p + ng * height, -ng))
             }
         };
-        TexturePoint { p, uv, n: ng }
+        TexturePoint { p, uv, n: ng, part: self.part }
     }
 
     /// The mean over a surface, by `n²` points of equal areas, of the luminance of `light` under the pattern.

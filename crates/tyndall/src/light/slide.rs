@@ -4,7 +4,7 @@
 //! `(u, v) = ½ + ½ (x / (z h_x), y / (z h_y))`, where `h_x` and `h_y` are the half sides of the picture in the plane z = 1.
 
 use crate::{
-    math::{Transform, Vec2, Vec3},
+    math::{Transform, Vec2, Vec3, Vec4},
     spectrum::{Lanes, Spectrum, Wavelengths, srgb},
     texture::{Texture, TexturePoint},
 };
@@ -38,8 +38,8 @@ impl Slide {
     /// What passes at a place, in the lanes of a path.
     #[inline]
     pub fn filter(&self, uv: Vec2, wavelengths: &Wavelengths) -> Lanes {
-        let n = self.to_world.matrix.z_axis.truncate();
-        self.texture.eval(&TexturePoint { p: self.to_world.matrix.w_axis.truncate(), uv, n }, wavelengths)
+        let [p, n] = [self.to_world.matrix.w_axis, self.to_world.matrix.z_axis].map(Vec4::truncate);
+        self.texture.eval(&TexturePoint { p, uv, n, part: None }, wavelengths)
     }
 
     /// Area of the picture in the plane z = 1 [1].
