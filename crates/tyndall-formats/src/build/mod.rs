@@ -1,11 +1,13 @@
 //! From what the user wrote to what is rendered: reads meshes and images, converts units, checks the physics.
 
 mod camera;
+mod emitters;
 mod lights;
 pub(crate) mod made;
 mod materials;
 mod media;
 mod meshes;
+mod painted;
 mod shapes;
 mod spectra;
 mod textures;
@@ -14,9 +16,17 @@ mod textures;
 mod tests;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DMat4;
-use tyndall::{film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode, texture::Texture};
+use tyndall::{
+    film::Crop,
+    light::LightTable,
+    math::Transform,
+    scene::Scene,
+    spectrum::ColorMode,
+    texture::{Texture, attribute::Painted},
+};
 
 use crate::{
     desc::{FilmDesc, MaterialId, MediumId, SceneDesc, TextureId},
@@ -49,6 +59,8 @@ struct Builder<'a> {
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
     meshes: Meshes,
+    /// Colours of meshes: of vertices, and of faces.
+    painted: [Arc<Painted>; 2],
     made: Made,
 }
 
@@ -60,6 +72,7 @@ impl<'a> Builder<'a> {
             textures: HashMap::new(),
             pictures: Pictures::new(),
             meshes: Meshes::new(desc),
+            painted: [Arc::default(), Arc::default()],
             made: Made::new(desc.materials.len()),
         }
     }
@@ -73,9 +86,10 @@ impl Builder<'_> {
                     .help("render it with --color spectral"),
             );
         }
+        // First the shapes: textures may show the colours of meshes.
+        let shapes = self.shapes();
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
-        let shapes = self.shapes();
         let lights = self.lights();
         let camera = shapes.as_ref().and_then(|shapes| self.camera(shapes));
         let mut materials = materials?;

@@ -43,8 +43,8 @@ const PLUGINS: &[Plugins] = &[
     },
     Plugins {
         tag: "emitter",
-        known: &["area", "constant", "envmap", "point", "spot", "directional"],
-        later: &["directionalarea", "projector", "sunsky", "timed_sunsky"],
+        known: &["area", "constant", "directional", "directionalarea", "envmap", "point", "projector", "spot"],
+        later: &["sunsky", "timed_sunsky"],
     },
     Plugins { tag: "film", known: &["hdrfilm"], later: &["specfilm"] },
     Plugins {
@@ -76,8 +76,8 @@ const PLUGINS: &[Plugins] = &[
     },
     Plugins {
         tag: "sensor",
-        known: &["perspective", "thinlens", "orthographic", "irradiancemeter", "radiancemeter", "batch"],
-        later: &["distant"],
+        known: &["perspective", "thinlens", "orthographic", "irradiancemeter", "radiancemeter", "distant", "batch"],
+        later: &[],
     },
     Plugins {
         tag: "shape",
@@ -95,7 +95,7 @@ const PLUGINS: &[Plugins] = &[
         ],
         later: &["bsplinecurve", "ellipsoids", "ellipsoidsmesh", "linearcurve", "merge", "sdfgrid"],
     },
-    Plugins { tag: "texture", known: &["bitmap", "checkerboard"], later: &["mesh_attribute", "volume"] },
+    Plugins { tag: "texture", known: &["bitmap", "checkerboard", "mesh_attribute"], later: &["volume"] },
     Plugins { tag: "volume", known: &["constvolume"], later: &["gridvolume"] },
 ];
 
