@@ -25,7 +25,7 @@ const WHOLE: usize = 1 << 18;
 /// Entries of a cluster at most: its pairs take up some megabytes.
 const CLUSTER: usize = 1 << 15;
 
-/// Shares of the nodes of a cluster that are inserted anew, pass by pass: half the work of the whole tree's passes, and a
+/// Shares of half the nodes of a cluster that are inserted anew, pass by pass: half the work of the whole tree's passes, and a
 /// cost 0.6 % higher.
 const CLUSTER_PASSES: [f32; 5] = [1.0 / 2.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 9.0, 1.0 / 17.0];
 
