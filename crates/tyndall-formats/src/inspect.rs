@@ -211,7 +211,7 @@ mod tests {
             assert!(told.contains(what), "{told}");
         }
         assert!(told.contains("the texture \"bark\" is not used"), "{told}");
-        assert!(!told.contains("moss") && !told.contains("wood"), "{told}");
+        assert!(!told.contains("the texture \"moss\"") && !told.contains("the texture \"wood\""), "{told}");
         assert!(told.contains("scene.pbrt:2:1"), "{told}");
     }
 
