@@ -59,7 +59,10 @@ impl Builder<'_> {
     fn texture_kind(&mut self, kind: &TextureKind, measure: Measure, span: Span) -> Option<Texture> {
         Some(match kind {
             TextureKind::Plain(value) => self.texture(value, measure)?,
-            TextureKind::Scale(of) => Texture::Scale(self.textures_of(of, measure)?),
+            // What is scaled to more than a share is cut where it is used, as in pbrt.
+            TextureKind::Scale([of, by]) => {
+                Texture::Scale(Arc::new([self.texture(of, measure)?, self.texture(by, Measure::Number)?]))
+            }
             TextureKind::Mix { of, amount } => Texture::Mix {
                 of: self.textures_of(of, measure)?,
                 by: Arc::new(Weight::Texture(self.texture(amount, Measure::Share)?)),
