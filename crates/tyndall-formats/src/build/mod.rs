@@ -5,6 +5,7 @@ mod lights;
 pub(crate) mod made;
 mod materials;
 mod media;
+mod principled;
 mod shapes;
 mod spectra;
 mod textures;
@@ -12,10 +13,13 @@ mod textures;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
+use std::{collections::HashMap, sync::Arc};
 
 use glam::DMat4;
-use tyndall::{film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode, texture::Texture};
+use tyndall::{
+    bsdf::RoughCoat, film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode,
+    texture::Texture,
+};
 
 use crate::{
     desc::{FilmDesc, MaterialId, MediumId, SceneDesc, TextureId},
@@ -46,6 +50,8 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    /// Coats of rough plastics, each tabulated once.
+    coats: Vec<Arc<RoughCoat>>,
     made: Made,
 }
 
@@ -56,6 +62,7 @@ impl<'a> Builder<'a> {
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            coats: Vec::new(),
             made: Made::new(desc.materials.len()),
         }
     }

@@ -22,6 +22,7 @@ mod camera;
 mod light;
 mod material;
 mod medium;
+mod principled;
 mod settings;
 mod shape;
 mod spectrum;
@@ -36,6 +37,7 @@ pub use camera::{
 pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
 pub use material::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind};
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
+pub use principled::{BurleyDesc, PrincipledDesc, PrincipledThinDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
 pub use shape::{GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 pub use spectrum::SpectrumDesc;

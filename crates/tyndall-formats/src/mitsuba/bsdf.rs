@@ -1,5 +1,5 @@
-//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `plastic`, `null`; `blendbsdf`, `mask`, and
-//! `twosided` around one that reflects or two.
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, `plastic`, their rough kin, `thindielectric`, `principled` and
+//! `principledthin`, `null`; `blendbsdf`, `mask`, and `twosided` around one that reflects or two.
 
 use tyndall_optics::spectra;
 
@@ -86,7 +86,10 @@ impl<'t> Builder<'t> {
         let plugin = words::plugin(child.element, &mut self.report)?;
         let what = match plugin {
             "twosided" => "two-sided already",
-            "dielectric" | "roughdielectric" | "thindielectric" | "null" | "mask" => "not a surface that only reflects",
+            "dielectric" | "roughdielectric" | "thindielectric" | "principledthin" | "null" | "mask" => {
+                "not a surface that only reflects"
+            }
+            "principled" if super::principled::is_clear(child.element) => "not a surface that only reflects",
             _ => return Some(()),
         };
         let error = SceneError::at(child.element.span_of("type"), format!("\"{plugin}\" is {what}"));
@@ -136,12 +139,15 @@ impl<'t> Builder<'t> {
                 roughness: self.roughness(plugin == "roughconductor", &mut object),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
-            "plastic" => MaterialKind::Plastic {
+            "plastic" | "roughplastic" => MaterialKind::Plastic {
                 eta: relative_index(&mut object, "polypropylene", &mut self.report),
                 reflectance: self.varying_or(&mut object, "diffuse_reflectance", Measure::Part, 0.5),
                 nonlinear: object.flag("nonlinear", false, &mut self.report),
+                roughness: (plugin == "roughplastic").then(|| self.roughness(true, &mut object)),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
+            "principled" => self.principled(&mut object),
+            "principledthin" => self.principled_thin(&mut object),
             "blendbsdf" => {
                 if !object.has("weight") {
                     let error = SceneError::at(element.span, "\"blendbsdf\" lacks a \"weight\"");

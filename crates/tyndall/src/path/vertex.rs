@@ -11,7 +11,7 @@ use crate::{
 
 /// A scattering vertex.
 #[derive(Debug, Clone, Copy)]
-pub enum Vertex {
+pub enum Vertex<'s> {
     /// On a surface.
     Surface {
         /// Where.
@@ -19,7 +19,7 @@ pub enum Vertex {
         /// The local space of its BSDF.
         frame: Frame,
         /// How it scatters.
-        bsdf: Bsdf,
+        bsdf: Bsdf<'s>,
         /// Back along the path, local.
         wo: Vec3,
     },
@@ -30,7 +30,7 @@ pub enum Vertex {
         /// Direction of travel before the collision.
         dir: Vec3,
         /// How it scatters.
-        phase: Phase,
+        phase: &'s Phase,
     },
 }
 
@@ -51,13 +51,13 @@ pub struct Scattered {
     pub crossed: bool,
 }
 
-impl Vertex {
+impl<'s> Vertex<'s> {
     /// A vertex on a surface that a ray along `dir` has hit.
     ///
     /// Where the shading normal turns away from a ray that the true surface faces, the true normal shades: the two must
     /// agree on the side that the path comes from, or it would change sides without changing media.
     #[inline]
-    pub fn surface(hit: Interaction, bsdf: Bsdf, dir: Vec3) -> Self {
+    pub fn surface(hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3) -> Self {
         let frame = hit.shading_frame();
         let wo = frame.to_local(-dir);
         if same_side(wo.z, -dir.dot(hit.ng)) {
@@ -124,7 +124,8 @@ impl Vertex {
                 let cos_theta = phase.sample(u);
                 let dir = deflect(*dir, cos_theta, v);
                 let pdf = phase.eval(cos_theta);
-                Some(Scattered {
+                // A table may end at 0, and rounding ends there.
+                (pdf > 0.0).then(|| Scattered {
                     ray: Ray::new(*p, dir),
                     weight: Lanes::ONE,
                     pdf,

@@ -305,7 +305,7 @@ fn a_medium_takes_constant_volumes_and_rayleigh_scattering() {
     ))
     .media[0];
     let Coefficients::ExtinctionAlbedo { sigma_t, .. } = &medium.coefficients else { panic!() };
-    assert_eq!((&sigma_t.value, medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), PhaseDesc::Rayleigh));
+    assert_eq!((&sigma_t.value, &medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), &PhaseDesc::Rayleigh));
 }
 
 /// Mitsuba's conductor without a material has eta = 0 and k = 1 unless told.

@@ -27,7 +27,7 @@ const FAULTS: &[(&str, &str)] = &[
     (r"<shape/>", r#"2:2: <shape> lacks the attribute "type""#),
     (
         r#"<shape type="cube"><bsdf type="hair"/></shape>"#,
-        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "blendbsdf", "mask""#,
+        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "roughplastic", "principled", "principledthin", "blendbsdf", "mask""#,
     ),
     (
         r#"<medium type="heterogeneous"><float name="x" value="1"/></medium>"#,
@@ -96,6 +96,18 @@ const FAULTS: &[(&str, &str)] = &[
     (
         r#"<medium type="homogeneous"><phase type="hg"><float name="g" value="1"/></phase></medium>"#,
         r#"2:68: "g" must be greater than -1 and less than 1, not 1"#,
+    ),
+    (
+        r#"<medium type="homogeneous"><phase type="tabphase"/></medium>"#,
+        r#"2:28: "tabphase" lacks its "values" | from straight back to straight on, at regular cosines"#,
+    ),
+    (
+        r#"<medium type="homogeneous"><phase type="blendphase"><float name="weight" value="1"/><phase type="hg"/></phase></medium>"#,
+        r#"2:28: "blendphase" is made of 2 <phase>, not of 1"#,
+    ),
+    (
+        r#"<phase type="blendphase" id="a"><float name="weight" value="1"/><phase type="hg"/><ref id="a"/></phase><medium type="homogeneous"><ref id="a"/></medium>"#,
+        "2:1: phase functions are blended more than 5 deep",
     ),
     (
         r#"<integrator type="path"><integer name="max_depth" value="0"/></integrator>"#,

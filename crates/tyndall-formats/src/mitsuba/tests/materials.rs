@@ -5,11 +5,13 @@ use crate::desc::{MaterialKind, Varying};
 
 #[test]
 fn plastic_is_polypropylene_of_a_grey_base_that_keeps_its_hue() {
-    let MaterialKind::Plastic { eta, reflectance, nonlinear, tint } = material("<bsdf type=\"plastic\"/>").kind else {
+    let MaterialKind::Plastic { eta, reflectance, nonlinear, roughness, tint } =
+        material("<bsdf type=\"plastic\"/>").kind
+    else {
         panic!()
     };
     assert_eq!(eta.value, crate::desc::SpectrumDesc::Constant(1.49 / 1.000277));
-    assert_eq!((reflectance.value, nonlinear, tint), (Varying::constant(0.5), false, None));
+    assert_eq!((reflectance.value, nonlinear, roughness, tint), (Varying::constant(0.5), false, None, None));
 }
 
 #[test]
