@@ -110,7 +110,7 @@ impl<'t> Builder<'t> {
             let message = format!("\"{}\" is made of {N} <bsdf>, not of {}", object.kind(), parts.len());
             self.report.errors.push(SceneError::at(object.element.span, message));
         }
-        let share = self.varying_or(object, share, Measure::Part, 0.5);
+        let share = self.number_or(object, share, Measure::Part, 0.5);
         let parts: Vec<_> = parts.iter().map(|part| self.part(part, two_sided)).collect();
         let parts: Vec<_> = parts.into_iter().collect::<Option<_>>()?;
         Some((parts.try_into().ok()?, share))
@@ -176,7 +176,8 @@ impl<'t> Builder<'t> {
         object.ignore(&["sample_visible"], "only visible normals are sampled", &mut self.report);
         let kinds = [("beckmann", MicrofacetKind::Beckmann), ("ggx", MicrofacetKind::Ggx)];
         let distribution = object.choice("distribution", &kinds, &mut self.report);
-        let [both, u, v] = ["alpha", "alpha_u", "alpha_v"].map(|name| self.varying(object, name, Measure::Amount));
+        let [both, u, v] =
+            ["alpha", "alpha_u", "alpha_v"].map(|name| self.varying_number(object, name, Measure::Amount));
         let default = || Spanned::new(Varying::constant(0.1), at);
         let (u, v) = match (both, u, v) {
             (Some(both), None, None) => (both.clone(), both),

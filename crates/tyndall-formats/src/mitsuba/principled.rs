@@ -30,8 +30,8 @@ impl<'t> Builder<'t> {
     pub(super) fn principled_thin(&mut self, object: &mut Object<'t>) -> MaterialKind {
         MaterialKind::PrincipledThin(Box::new(PrincipledThinDesc {
             burley: self.burley(object),
-            eta: self.varying_or(object, "eta", Measure::Amount, 1.5),
-            diff_trans: self.varying_or(object, "diff_trans", Measure::Amount, 0.0),
+            eta: self.number_or(object, "eta", Measure::Amount, 1.5),
+            diff_trans: self.number_or(object, "diff_trans", Measure::Amount, 0.0),
             rates: [
                 [
                     rate(object, "diffuse_reflectance_sampling_rate", &mut self.report),
@@ -47,7 +47,7 @@ impl<'t> Builder<'t> {
 
     fn burley(&mut self, object: &mut Object<'t>) -> BurleyDesc {
         BurleyDesc {
-            base_color: self.part_or(object, "base_color", 0.5),
+            base_color: self.varying_or(object, "base_color", Measure::Part, 0.5),
             roughness: self.part_or(object, "roughness", 0.5),
             anisotropic: self.part_or(object, "anisotropic", 0.0),
             spec_trans: self.part_or(object, "spec_trans", 0.0),
@@ -59,7 +59,7 @@ impl<'t> Builder<'t> {
     }
 
     fn part_or(&mut self, object: &mut Object<'t>, name: &'static str, default: f64) -> Spanned<Varying> {
-        self.varying_or(object, name, Measure::Part, default)
+        self.number_or(object, name, Measure::Part, default)
     }
 }
 

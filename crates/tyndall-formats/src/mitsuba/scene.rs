@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::object::{Files, Ids, Object, Report};
+use super::texture::Answer;
 use super::tree::{Element, Tree};
 use super::{camera, integrator, words};
 use crate::desc::{
@@ -25,7 +26,7 @@ pub(super) struct Builder<'t> {
     /// The materials that are being built, each inside of the one before.
     open_materials: Vec<(Span, bool)>,
     built_media: HashMap<Span, Option<MediumId>>,
-    pub(super) built_textures: HashMap<Span, Option<TextureId>>,
+    pub(super) built_textures: HashMap<(Span, Answer), Option<TextureId>>,
     pub(super) texture_depth: u32,
     pub(super) built_groups: HashMap<Span, GroupId>,
     /// The materials of shapes that name none: that of a surface, and that of one that shines.
@@ -123,7 +124,7 @@ impl<'t> Builder<'t> {
             self.medium_id(medium.element);
         }
         for texture in scene.nested("texture") {
-            self.texture(texture.element);
+            self.texture(texture.element, Answer::Colour);
         }
         for volume in scene.nested("volume") {
             words::plugin(volume.element, &mut self.report);

@@ -94,6 +94,18 @@ const FAULTS: &[(&str, &str)] = &[
         r#"2:35: "dielectric" is not a surface that only reflects | leave the "twosided" out"#,
     ),
     (
+        r#"<bsdf type="twosided"><bsdf type="principled"><float name="spec_trans" value="0.5"/></bsdf></bsdf>"#,
+        r#"2:35: "principled" is not a surface that only reflects | leave the "twosided" out"#,
+    ),
+    (
+        r#"<bsdf type="principled"><float name="eta" value="1.5"/><float name="specular" value="0.5"/></bsdf>"#,
+        r#"2:86: "specular" and "eta" say the same: give one of them"#,
+    ),
+    (
+        r#"<bsdf type="roughplastic"><string name="distribution" value="phong"/></bsdf>"#,
+        r#"2:62: "distribution" cannot be "phong" | known are "beckmann", "ggx""#,
+    ),
+    (
         r#"<medium type="homogeneous"><phase type="hg"><float name="g" value="1"/></phase></medium>"#,
         r#"2:68: "g" must be greater than -1 and less than 1, not 1"#,
     ),
