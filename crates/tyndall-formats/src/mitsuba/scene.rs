@@ -2,6 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use tyndall::integrator::Counted;
+
 use super::object::{Files, Ids, Object, Report};
 use super::texture::Answer;
 use super::tree::{Element, Tree};
@@ -229,5 +231,12 @@ impl<'t> Builder<'t> {
 /// Mitsuba's `path`, which it takes if a scene names none.
 pub(super) fn default_integrator(span: Span) -> IntegratorDesc {
     let name = Spanned::new("path".into(), span);
-    IntegratorDesc { name, max_depth: None, rr_depth: None, hide_emitters: false, layers: Vec::new() }
+    IntegratorDesc {
+        name,
+        max_depth: None,
+        counted: Counted::default(),
+        rr_depth: None,
+        hide_emitters: false,
+        layers: Vec::new(),
+    }
 }

@@ -79,6 +79,12 @@ impl<'s> Vertex<'s> {
         }
     }
 
+    /// Whether light can go on as if nothing were there, beside other ways.
+    #[inline]
+    pub fn is_pane(&self) -> bool {
+        matches!(self, Self::Surface { bsdf: Bsdf::ThinDielectric(_), .. })
+    }
+
     /// Whether a light sample could contribute at all.
     #[inline]
     pub fn can_use_light_samples(&self) -> bool {
