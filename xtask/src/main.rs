@@ -1,4 +1,4 @@
-//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `collections`, `bench`, `full`.
+//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `words`, `collections`, `bench`, `full`.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
 mod bench;
@@ -13,6 +13,7 @@ mod peers;
 mod shell;
 mod tidy;
 mod venv;
+mod words;
 
 use std::process::ExitCode;
 
@@ -34,11 +35,13 @@ enum Chore {
     Tidy,
     /// tyndall against Mitsuba 3, and RGB against spectral colour: agreement and efficiency
     Peers(peers::Options),
+    /// A small scene for each word of the scene languages: drawn, and compared with Mitsuba 3
+    Words(words::Options),
     /// Other people's scenes: what loads, what renders, what agrees with Mitsuba 3 or with published images
     Collections(collections::Options),
     /// The figures that tyndall promises, measured on this machine
     Bench(bench::Options),
-    /// All that is known to be worth checking: ci, the slow tests, peers, bench
+    /// All that is known to be worth checking: ci, the slow tests, peers, words, bench
     Full,
 }
 
@@ -57,12 +60,14 @@ fn run(chore: Chore) -> anyhow::Result<()> {
         Chore::Ci => ci::run(),
         Chore::Tidy => tidy::run(),
         Chore::Peers(options) => peers::run(&options),
+        Chore::Words(options) => words::run(&options),
         Chore::Collections(options) => collections::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Full => {
             ci::run()?;
             ci::run_slow_tests()?;
             peers::run(&peers::Options::default())?;
+            words::run(&words::Options::default())?;
             bench::run(&bench::Options::default())
         }
     }

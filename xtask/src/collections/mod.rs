@@ -6,26 +6,26 @@
 //! with the image that its author published ([`published`]). The rows are kept in `target/collections/report.json`, so
 //! that a call with `--filter` or `--unsettled` renews only some, and told in `docs/src/collections.md`.
 
-mod limits;
-mod ours;
+pub(crate) mod comparison;
+pub(crate) mod limits;
+pub(crate) mod ours;
 mod published;
 mod report;
 mod sources;
-mod theirs;
+pub(crate) mod theirs;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 
-use crate::peers::image::Image;
-use crate::peers::statistics::compare;
 use crate::peers::tyndall::Tyndall;
 use crate::shell::root;
+use comparison::Comparison;
 use limits::Limits;
 use ours::{Failure, Ours};
 use published::Likeness;
-use report::{Comparison, Outcome, Row};
+use report::{Outcome, Row};
 use sources::{Language, Source};
 use theirs::Theirs;
 
@@ -33,8 +33,6 @@ use theirs::Theirs;
 const FALSE_ALARM: f64 = 0.01;
 /// Independent renders of each side.
 const RUNS: u32 = 4;
-/// Pixels left out at each edge before Mitsuba's picture is compared: the reach of its widest filter.
-const RIM: usize = 4;
 
 /// What to run.
 #[derive(Debug, Args)]
@@ -150,17 +148,15 @@ impl Bench {
             match self.ours.render(scene, size, self.spp, 1 + run, &image)? {
                 Ok(picture) => {
                     seconds = seconds.or(Some((picture.load_seconds, picture.render_seconds)));
-                    images.push(without_rim(&picture.image));
+                    images.push(picture.image);
                 }
                 Err(failure) => return self.failed(source, scene, failure, stem),
             }
         }
         let outcome = match theirs {
             Err(message) => Outcome::Rendered(format!("Mitsuba does not render it: {message}")),
-            Ok(theirs) => {
-                let theirs: Vec<Image> = theirs.iter().map(without_rim).collect();
-                compared(&images, &theirs).unwrap_or_else(|error| Outcome::Rendered(format!("not compared: {error}")))
-            }
+            Ok(theirs) => Comparison::of(&images, &theirs)
+                .map_or_else(|error| Outcome::Rendered(format!("not compared: {error}")), Outcome::Compared),
         };
         Ok(Row { source, outcome, seconds })
     }
@@ -185,17 +181,6 @@ impl Bench {
     }
 }
 
-fn compared(ours: &[Image], theirs: &[Image]) -> Result<Outcome> {
-    let found = compare(ours, theirs)?;
-    let (x, y, channel) = found.extreme_at;
-    Ok(Outcome::Compared(Comparison {
-        p: if found.tests == 0 { 1.0 } else { found.p() },
-        extreme_z: found.extreme_z,
-        extreme_at: (x + RIM, y + RIM, channel),
-        ratio: found.ratio.map(|(ratio, error)| (ratio.is_finite() && error.is_finite()).then_some((ratio, error))),
-    }))
-}
-
 /// A size with the same ratio of sides, exactly: Mitsuba keeps the angle of the whole picture. As wide as `width` at most,
 /// or the least that there is.
 fn small([width, height]: [usize; 2], at_most: usize) -> [usize; 2] {
@@ -205,16 +190,6 @@ fn small([width, height]: [usize; 2], at_most: usize) -> [usize; 2] {
     }
     let unit = [width / divisor.max(1), height / divisor.max(1)];
     unit.map(|side| side * (at_most / unit[0].max(1)).clamp(1, divisor.max(1)))
-}
-
-/// The picture without its outermost pixels, if anything is left then.
-fn without_rim(image: &Image) -> Image {
-    let (width, height) = (image.width.saturating_sub(2 * RIM), image.height.saturating_sub(2 * RIM));
-    if width == 0 || height == 0 {
-        return image.clone();
-    }
-    let row = |y: usize| image.pixels[(y + RIM) * image.width + RIM..][..width].iter().copied();
-    Image { width, height, pixels: (0..height).flat_map(row).collect() }
 }
 
 #[cfg(test)]
@@ -227,13 +202,5 @@ mod tests {
         assert_eq!(small([683, 512], 128), [683, 512], "no smaller one has this ratio");
         assert_eq!(small([64, 64], 128), [64, 64], "no larger than the scene's own");
         assert_eq!(small([960, 720], 128), [128, 96]);
-    }
-
-    #[test]
-    fn the_rim_is_cut_and_the_middle_stays() {
-        let pixels = (0..10 * 10).map(|index| [index as f32; 3]).collect();
-        let inner = without_rim(&Image { width: 10, height: 10, pixels });
-        assert_eq!((inner.width, inner.height), (2, 2));
-        assert_eq!(inner.pixels.iter().map(|pixel| pixel[0]).collect::<Vec<_>>(), [44.0, 45.0, 54.0, 55.0]);
     }
 }

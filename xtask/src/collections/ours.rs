@@ -76,7 +76,7 @@ impl Ours {
         Ok(Ok([width.parse()?, height.parse()?]))
     }
 
-    /// One render, to `image` (without ending).
+    /// One render, to `image` (without ending): `.exr`, `.png` and `.json`.
     pub(crate) fn render(
         &self,
         scene: &Path,
@@ -89,7 +89,7 @@ impl Ours {
         let end = self.limits.run(&self.binary, |command| {
             command.arg("render").arg(scene).args(["--quiet", "--spp", &spp.to_string(), "--seed", &seed.to_string()]);
             command.arg("--resolution").arg(format!("{}x{}", size[0], size[1]));
-            command.arg("-o").arg(&exr).arg("--json").arg(&json);
+            command.arg("-o").arg(image).arg("--json").arg(&json);
         })?;
         if let Err(failure) = succeeded(end) {
             return Ok(Err(failure));

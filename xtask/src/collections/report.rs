@@ -7,22 +7,10 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
+use super::comparison::Comparison;
 use super::ours::Failure;
 use super::published::Likeness;
 use super::sources::{Language, Source};
-
-/// tyndall's runs against Mitsuba's.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Comparison {
-    /// Probability of pictures as different, if they are the same
-    pub(crate) p: f64,
-    /// The z of largest magnitude of a tile
-    pub(crate) extreme_z: f64,
-    /// First pixel of that tile in the picture, and channel
-    pub(crate) extreme_at: (usize, usize, usize),
-    /// Our mean over Mitsuba's with its standard error, red, green, blue; none where both are black
-    pub(crate) ratio: [Option<(f64, f64)>; 3],
-}
 
 /// What came of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -64,18 +52,7 @@ impl Row {
     /// In one word, and in a sentence.
     pub(crate) fn told(&self, level: f64) -> (&'static str, String) {
         match &self.outcome {
-            Outcome::Compared(found) => {
-                let word = if found.p < level { "**differs**" } else { "agrees" };
-                let (x, y, channel) = found.extreme_at;
-                let ratio = found
-                    .ratio
-                    .map(|ratio| ratio.map_or("–".to_owned(), |(ratio, error)| format!("{ratio:.4}±{error:.4}")));
-                let (z, channel) = (found.extreme_z, ["r", "g", "b"][channel]);
-                (
-                    word,
-                    format!("means {}; largest z {z:.1} at ({x}, {y}) {channel}; p {:.1e}", ratio.join(" "), found.p),
-                )
-            }
+            Outcome::Compared(found) => found.told(level),
             Outcome::Published(found) => {
                 let word = if found.is_near() { "near its image" } else { "**unlike its image**" };
                 let ratio = found.ratio.map(|ratio| format!("{ratio:.3}")).join(" ");

@@ -50,7 +50,7 @@ impl Made {
 pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
     match kind {
         MaterialKind::Mix { of, .. } | MaterialKind::TwoFaced { of } => of,
-        MaterialKind::Mask { of, .. } => std::slice::from_ref(of),
+        MaterialKind::Mask { of, .. } | MaterialKind::Embossed { of, .. } => std::slice::from_ref(of),
         MaterialKind::Diffuse { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::Dielectric { .. }
@@ -59,6 +59,7 @@ pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
         | MaterialKind::Plastic { .. }
         | MaterialKind::Principled(_)
         | MaterialKind::PrincipledThin(_)
+        | MaterialKind::Coated(_)
         | MaterialKind::Interface => &[],
     }
 }

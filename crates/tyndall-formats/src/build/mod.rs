@@ -5,6 +5,7 @@ mod lights;
 pub(crate) mod made;
 mod materials;
 mod media;
+mod meshes;
 mod principled;
 mod shapes;
 mod spectra;
@@ -27,6 +28,7 @@ use crate::{
     source::{SourceMap, Span},
 };
 use made::Made;
+use meshes::Meshes;
 use spectra::Measure;
 use textures::Pictures;
 
@@ -52,6 +54,7 @@ struct Builder<'a> {
     pictures: Pictures,
     /// Coats of rough plastics, each tabulated once.
     coats: Vec<Arc<RoughCoat>>,
+    meshes: Meshes,
     made: Made,
 }
 
@@ -63,6 +66,7 @@ impl<'a> Builder<'a> {
             textures: HashMap::new(),
             pictures: Pictures::new(),
             coats: Vec::new(),
+            meshes: Meshes::new(desc),
             made: Made::new(desc.materials.len()),
         }
     }
@@ -70,6 +74,12 @@ impl<'a> Builder<'a> {
 
 impl Builder<'_> {
     fn scene(&mut self, color: ColorMode) -> Option<Scene> {
+        if self.desc.film.color() == ColorMode::Spectral && color != ColorMode::Spectral {
+            return self.fail(
+                SceneError::at(self.desc.film.span, "this film records wavelengths, and the render has colours only")
+                    .help("render it with --color spectral"),
+            );
+        }
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
         let shapes = self.shapes();

@@ -3,18 +3,23 @@
 use std::collections::HashMap;
 
 use tyndall::{
-    light::{AreaLight, EmitterShape, Light, LightId},
-    math::{Vec2, Vec3},
+    light::{AreaLight, EmitterShape, Light, LightId, Revolved},
+    math::{Transform, Vec2, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
-    shape::{Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere},
+    shape::{
+        Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere, Turn,
+    },
+    texture::TexturePoint,
 };
 
-use super::{Builder, material_id, medium_id};
+use super::{Builder, material_id, medium_id, spectra::Measure};
 use crate::{
-    desc::{AreaLightDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
+    desc::{
+        AreaLightDesc, DisplacementDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind,
+    },
     error::SceneError,
-    mesh::{MeshError, TriangleMesh, read_obj, read_ply, read_serialized},
+    mesh::{MeshError, TriangleMesh, displace, read_obj, read_ply, read_serialized, subdivide},
 };
 
 /// All shapes of a scene.
@@ -122,12 +127,17 @@ impl<'a> Builder<'a> {
         let reversed = desc.reverse_orientation;
         let builder = &mut gathered.builder;
         let added = match &desc.kind {
-            ShapeKind::Sphere { radius } => {
-                vec![builder.add_sphere(Sphere::new(Vec3::ZERO, *radius as f32), &transform, reversed)]
+            ShapeKind::Sphere { radius, part } => {
+                let sphere = Sphere::new(Vec3::ZERO, *radius as f32).cut(*part);
+                vec![builder.add_sphere(sphere, &transform, reversed)]
             }
-            ShapeKind::Disk { height, radius, inner_radius, mapping } => {
-                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32).mapped(*mapping);
-                vec![builder.add_disk(disk, &transform, reversed)]
+            ShapeKind::Disk { height, radius, inner_radius, turn, mapping } => {
+                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32);
+                vec![builder.add_disk(disk.cut(*turn).mapped(*mapping), &transform, reversed)]
+            }
+            ShapeKind::Cylinder { radius, heights, turn } => {
+                let cylinder = Cylinder::new(*radius as f32, heights.map(|z| z as f32), *turn);
+                vec![builder.add_cylinder(cylinder, &transform, reversed)]
             }
             ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],
             ShapeKind::Cube => vec![builder.add_mesh(cube(), &transform, reversed)],
@@ -135,19 +145,33 @@ impl<'a> Builder<'a> {
             ShapeKind::BilinearMesh(patches) => {
                 patches_of(patches).map(|patch| builder.add_patch(patch, &transform, reversed)).collect()
             }
-            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_ply(&path.value), path, normals, *flip_tex_coords)?;
+                let mesh = match displacement {
+                    None => self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)),
+                    Some(displacement) => self.displaced(path, displacement, &transform)?,
+                };
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
+            ShapeKind::Subdivision { positions, indices, levels } => {
+                let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();
+                match subdivide(&positions, indices, *levels) {
+                    // Its normals are against the winding.
+                    Ok(mesh) => vec![builder.add_mesh(mesh_of(mesh), &transform, !reversed)],
+                    Err(problem) => return self.fail(SceneError::at(desc.span, format!("this surface: {problem}"))),
+                }
+            }
             ShapeKind::Serialized { path, index, face_normals } => {
-                let normals = Normals::asked(*face_normals, false);
-                let mesh = self.mesh_file(read_serialized(&path.value, *index), path, normals, false)?;
+                let normals = Normals::asked(*face_normals, true);
+                let mesh = self.meshes.get((path.value.clone(), *index), || read_serialized(&path.value, *index));
+                let mesh = self.mesh_file(mesh, path, normals, false)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
             ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_obj(&path.value), path, normals, *flip_tex_coords)?;
+                let mesh = self.meshes.get((path.value.clone(), 0), || read_obj(&path.value));
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
@@ -163,7 +187,11 @@ impl<'a> Builder<'a> {
     /// A body with a priority must be something that light can enter, that does not shine, and whose outside is left to others.
     fn check_priority(&mut self, desc: &ShapeDesc) -> Option<()> {
         let Some(priority) = desc.priority else { return Some(()) };
-        let kind = self.desc.material(desc.material.value).map(|material| &material.kind);
+        let kind = |id| self.desc.material(id).map(|material| &material.kind);
+        let kind = match kind(desc.material.value) {
+            Some(MaterialKind::Embossed { of, .. }) => kind(of.value),
+            even => even,
+        };
         if !matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::Interface) | None) {
             return self.fail(
                 SceneError::at(priority.span, "only a body that light can enter has a priority")
@@ -245,9 +273,9 @@ impl<'a> Builder<'a> {
         flip_tex_coords: bool,
     ) -> Option<Mesh> {
         match mesh {
-            Ok(mesh) => {
+            Ok(mut mesh) => {
                 let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
-                let mut uvs = mesh.uvs.unwrap_or_default();
+                let mut uvs = mesh.uvs.take().unwrap_or_default();
                 if flip_tex_coords {
                     for uv in &mut uvs {
                         uv.y = 1.0 - uv.y;
@@ -255,12 +283,33 @@ impl<'a> Builder<'a> {
                 }
                 let normals = match normals {
                     Normals::Flat => Vec::new(),
-                    Normals::AsGiven | Normals::Smooth => mesh.normals.or(smooth).unwrap_or_default(),
+                    Normals::AsGiven | Normals::Smooth => mesh.normals.take().or(smooth).unwrap_or_default(),
                 };
-                Some(Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false })
+                Some(mesh_of(TriangleMesh { normals: Some(normals), uvs: Some(uvs), ..mesh }))
             }
             Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
         }
+    }
+
+    /// A file's mesh with its vertices moved; `None` if the texture of the heights is wrong.
+    fn displaced(
+        &mut self,
+        path: &FileRef,
+        displacement: &DisplacementDesc,
+        transform: &Transform,
+    ) -> Option<Result<TriangleMesh, MeshError>> {
+        let texture = self.texture(&displacement.height, Measure::Number)?;
+        // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
+        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO });
+        let length = |a: Vec3, b: Vec3| {
+            let along = transform.matrix.as_dmat4().transform_vector3(b.as_dvec3() - a.as_dvec3());
+            along.length()
+        };
+        let displace = |mesh| {
+            displace(mesh, length, displacement.edge_length, height)
+                .map_err(|problem| MeshError { path: path.value.clone(), problem })
+        };
+        Some(self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)).and_then(displace))
     }
 
     /// The lights of a shining object, added to `lights`.
@@ -320,14 +369,17 @@ impl Pieces {
 /// The surface of an object; or what it is, if it cannot be sampled.
 fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str> {
     Ok(Pieces::Whole(match geometry.shape(object) {
-        Shape::Sphere(sphere) => {
-            let (centre, radius) = sphere.round().ok_or("an ellipsoid")?;
-            EmitterShape::Sphere { centre, radius, inward: sphere.reversed }
-        }
-        Shape::Disk(disk) => {
-            let radius = disk.radius().ok_or("an elliptic disk")?;
-            EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
-        }
+        Shape::Sphere(sphere) => match sphere.round() {
+            Some((centre, radius)) => EmitterShape::Sphere { centre, radius, inward: sphere.reversed },
+            None => EmitterShape::Revolved(Revolved::sphere(sphere)),
+        },
+        Shape::Disk(disk) => match disk.radius().filter(|_| disk.turn == Turn::FULL) {
+            Some(radius) => {
+                EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
+            }
+            None => EmitterShape::Revolved(Revolved::disk(disk)),
+        },
+        Shape::Cylinder(cylinder) => EmitterShape::Revolved(Revolved::cylinder(cylinder)),
         Shape::Patch(_) => return Err("a curved bilinear patch"),
         Shape::Mesh(mesh) => {
             let Some(parallelogram) = as_parallelogram(mesh) else {
@@ -371,6 +423,12 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
         e2,
         ng: if mesh.reversed { -ng } else { ng },
     })
+}
+
+fn mesh_of(mesh: TriangleMesh) -> Mesh {
+    let TriangleMesh { positions, indices, normals, uvs } = mesh;
+    let (normals, uvs) = (normals.unwrap_or_default(), uvs.unwrap_or_default());
+    Mesh { positions, indices, normals, uvs, reversed: false }
 }
 
 fn inline_mesh(mesh: &MeshDesc) -> Mesh {

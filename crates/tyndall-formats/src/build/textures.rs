@@ -160,6 +160,7 @@ impl Builder<'_> {
             scale: desc.scale as f32,
             invert: desc.invert,
             grey: if desc.by_luminance { Grey::Luminance } else { Grey::Mean },
+            least: if measure == Measure::Number { f32::MIN } else { 0.0 },
             most: if measure == Measure::Share { 1.0 } else { f32::MAX },
         })
     }

@@ -53,3 +53,23 @@ pub struct PrincipledThinDesc {
     /// far side.
     pub rates: [[f64; 2]; 2],
 }
+
+impl BurleyDesc {
+    fn quantities(&self) -> [&Spanned<Varying>; 8] {
+        let Self { base_color, roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness } = self;
+        [base_color, roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness]
+    }
+}
+
+impl PrincipledDesc {
+    pub(super) fn quantities(&self) -> Vec<&Spanned<Varying>> {
+        let own = [&self.metallic, &self.clearcoat, &self.clearcoat_gloss];
+        self.burley.quantities().into_iter().chain(own).collect()
+    }
+}
+
+impl PrincipledThinDesc {
+    pub(super) fn quantities(&self) -> Vec<&Spanned<Varying>> {
+        self.burley.quantities().into_iter().chain([&self.eta, &self.diff_trans]).collect()
+    }
+}

@@ -3,11 +3,13 @@
 //! A file is read whole, and nothing is allocated that its own bytes could not fill, so that a header which promises
 //! 10¹² vertices is an error and not an exhausted machine. What a reader returns has passed [`TriangleMesh::checked`].
 
+mod displace;
 mod normals;
 mod obj;
 mod ply;
 mod ply_binary;
 mod serialized;
+mod subdivide;
 
 use std::path::{Path, PathBuf};
 
@@ -15,9 +17,11 @@ use tyndall::math::{Vec2, Vec3};
 
 use crate::gzip;
 
+pub use displace::displace;
 pub use obj::{parse_obj, read_obj};
 pub use ply::{parse_ply, read_ply, write_ply};
 pub use serialized::{parse_serialized, read_serialized};
+pub use subdivide::subdivide;
 
 /// The longest mesh that a compressed file may hold \[bytes\]: some 50 million triangles.
 const MAX_INFLATED_BYTES: u64 = 1 << 31;

@@ -68,6 +68,10 @@ fn read_faces(element: &ElementDef, bytes: &mut Bytes, mesh: &mut TriangleMesh) 
             match (property, column) {
                 (PropertyType::List { count_type, data_type }, Column::Corners) => {
                     let count = bytes.index(*count_type)?;
+                    if let (3, Some(triangle)) = (count, bytes.triangle(*data_type)) {
+                        mesh.indices.push(triangle);
+                        continue;
+                    }
                     corners.clear();
                     for _ in 0..count {
                         corners.push(bytes.index(*data_type)?);
@@ -157,6 +161,25 @@ impl<'a> Bytes<'a> {
             ScalarType::U32 => u32::from_le_bytes(self.array()?).into(),
             ScalarType::F32 | ScalarType::F64 => return Err("a list of indices must hold integers".into()),
         })
+    }
+
+    /// Three vertices at once, if they stand there as most programs write them; else nothing is taken.
+    #[inline]
+    fn triangle(&mut self, scalar: ScalarType) -> Option<[u32; 3]> {
+        let limit = match scalar {
+            ScalarType::I32 => i32::MAX as u32,
+            ScalarType::U32 => u32::MAX,
+            _ => return None,
+        };
+        let (taken, rest) = self.rest.split_first_chunk::<12>()?;
+        let (corners, _) = taken.as_chunks::<4>();
+        let read = if self.big_endian { u32::from_be_bytes } else { u32::from_le_bytes };
+        let triangle = [0, 1, 2].map(|i| read(corners[i]));
+        if triangle.iter().any(|&corner| corner > limit) {
+            return None;
+        }
+        self.rest = rest;
+        Some(triangle)
     }
 
     fn skip(&mut self, property: &PropertyType) -> Result<(), String> {

@@ -21,6 +21,7 @@ const MAGIC: u16 = 0x041C;
 const HAS_NORMALS: u32 = 0x1;
 const HAS_UVS: u32 = 0x2;
 const HAS_COLOURS: u32 = 0x8;
+const IS_FACETED: u32 = 0x10;
 const DOUBLE: u32 = 0x2000;
 
 /// The longest name of a mesh that is read over \[bytes\].
@@ -102,13 +103,14 @@ impl Body<'_> {
             let (corners, _) = corners.as_chunks::<4>();
             indices.push([0, 1, 2].map(|i| u32::from_le_bytes(corners[i])));
         }
-        TriangleMesh {
+        let mesh = TriangleMesh {
             positions: positions.into_iter().map(Vec3::from_array).collect(),
             indices,
             normals: normals.map(|n| n.into_iter().map(Vec3::from_array).collect()),
             uvs: uvs.map(|uv| uv.into_iter().map(Vec2::from_array).collect()),
         }
-        .checked()
+        .checked()?;
+        Ok(if flags & IS_FACETED == 0 { mesh } else { faceted(&mesh) })
     }
 
     fn array<const N: usize>(&mut self) -> Result<[u8; N], String> {
@@ -140,6 +142,18 @@ impl Body<'_> {
             tuples.push(tuple);
         }
         Ok(tuples)
+    }
+}
+
+/// The same triangles with corners of their own, so that normals that are averaged at the corners are those of the faces.
+fn faceted(mesh: &TriangleMesh) -> TriangleMesh {
+    let corners = || mesh.indices.iter().flatten().map(|&corner| corner as usize);
+    let count = mesh.indices.len() as u32;
+    TriangleMesh {
+        positions: corners().map(|corner| mesh.positions[corner]).collect(),
+        indices: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        normals: None,
+        uvs: mesh.uvs.as_ref().map(|uvs| corners().map(|corner| uvs[corner]).collect()),
     }
 }
 
@@ -193,6 +207,16 @@ mod tests {
             let missing = parse_serialized(&file(version), 2).unwrap_err();
             assert_eq!(missing, "has 2 meshes, counted from 0, and no number 2");
         }
+    }
+
+    #[test]
+    fn a_mesh_flagged_as_faceted_has_corners_for_each_face_and_no_normals() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let indices = vec![[0, 1, 2], [0, 3, 1]];
+        let mesh = TriangleMesh { positions, indices, normals: Some(vec![Vec3::Z; 4]), uvs: None };
+        let faceted = faceted(&mesh);
+        assert_eq!(faceted.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ZERO, Vec3::Z, Vec3::X]);
+        assert_eq!((faceted.indices, faceted.normals), (vec![[0, 1, 2], [3, 4, 5]], None));
     }
 
     /// Every cut and every changed byte of a good file is an error or a mesh, and never a panic; a header that promises 2⁶⁰

@@ -125,9 +125,7 @@ impl<'t> Builder<'t> {
         for medium in scene.nested("medium") {
             self.medium_id(medium.element);
         }
-        for texture in scene.nested("texture") {
-            self.texture(texture.element, Answer::Colour);
-        }
+        let textures = scene.nested("texture");
         for volume in scene.nested("volume") {
             words::plugin(volume.element, &mut self.report);
         }
@@ -148,6 +146,9 @@ impl<'t> Builder<'t> {
             None => None,
         };
         let integrator = integrator.unwrap_or_else(|| default_integrator(root.span));
+        for texture in textures {
+            self.unless_built(texture.element);
+        }
         let sensor = self.sensor(&mut scene);
         let seen = sensor.and_then(|(element, shape)| camera::sensor(self, element, shape));
         scene.leave_to_references(referred);

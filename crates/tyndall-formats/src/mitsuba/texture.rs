@@ -127,6 +127,13 @@ impl<'t> Builder<'t> {
         id
     }
 
+    /// A texture that nothing may refer to: whether it is right, and that it is there.
+    pub(super) fn unless_built(&mut self, element: &'t Element) {
+        if !self.built_textures.contains_key(&(element.span, Answer::Number)) {
+            self.texture(element, Answer::Colour);
+        }
+    }
+
     fn texture_kind(&mut self, element: &'t Element, answer: Answer) -> Option<TextureKind> {
         let plugin = words::plugin(element, &mut self.report)?;
         let mut object = self.object(element);

@@ -18,6 +18,7 @@ pub mod fresnel;
 pub mod microfacet;
 
 mod burley;
+mod coated;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -31,6 +32,7 @@ mod rough_plastic;
 mod thin_dielectric;
 
 pub use burley::Burley;
+pub use coated::{Base, Coated};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
@@ -132,6 +134,8 @@ pub enum Bsdf<'s> {
     Principled(Principled<'s>),
     /// Burley's model of sheets.
     PrincipledThin(PrincipledThin<'s>),
+    /// A base under a coat, rough or smooth, clear or cloudy.
+    Coated(Coated),
     /// No surface at all: a mere boundary of media.
     Null,
 }
@@ -174,18 +178,15 @@ impl Bsdf<'_> {
         }
     }
 
-    /// A metal with this reflectance in [0, 1] at normal incidence: index 1 and `k = 2√r / √(1 − r)`, `r ≤ 0.9999`
-    /// (pbrt's parameter `reflectance`).
+    /// A metal with this reflectance in [0, 1] at normal incidence: [`index_of_reflectance`].
     pub fn conductor_of_reflectance(reflectance: Lanes, alpha_x: f32, alpha_y: f32) -> Self {
-        let k = reflectance.map(|r| {
-            let r = r.clamp(0.0, 0.9999);
-            2.0 * r.sqrt() / (1.0 - r).sqrt()
-        });
-        Self::conductor(Lanes::ONE, k, alpha_x, alpha_y)
+        let [eta, k] = index_of_reflectance(reflectance);
+        Self::conductor(eta, k, alpha_x, alpha_y)
     }
 
     /// The same model with every reflection multiplied by `reflectance` and every transmission by `transmittance`
-    /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy.
+    /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy. What is
+    /// under a coat takes no tints.
     #[must_use]
     pub fn tinted(mut self, reflectance: Lanes, transmittance: Lanes) -> Self {
         match &mut self {
@@ -204,8 +205,18 @@ impl Bsdf<'_> {
                 model.reflectance *= reflectance;
                 model.transmittance *= transmittance;
             }
-            // Their colour tints them.
-            Self::Principled(_) | Self::PrincipledThin(_) | Self::Null => {}
+            // Their colours tint them.
+            Self::Coated(_) | Self::Principled(_) | Self::PrincipledThin(_) | Self::Null => {}
+        }
+        self
+    }
+
+    /// The same model with other random numbers, if it has any: [`Coated`].
+    #[must_use]
+    #[inline]
+    pub fn seeded(mut self, seed: impl FnOnce() -> u32) -> Self {
+        if let Self::Coated(model) = &mut self {
+            model.seed = seed();
         }
         self
     }
@@ -225,13 +236,14 @@ impl Bsdf<'_> {
             | Self::RoughPlastic(_)
             | Self::Principled(_)
             | Self::PrincipledThin(_)
+            | Self::Coated(_)
             | Self::Null => return self,
         };
         (microfacets.distribution, microfacets.shadowing) = (distribution, shadowing);
         self
     }
 
-    /// The same model answering on `sides`; interfaces always have two.
+    /// The same model answering on `sides`; interfaces and coats always have two.
     #[must_use]
     pub fn on(mut self, sides: Sides) -> Self {
         match &mut self {
@@ -246,6 +258,7 @@ impl Bsdf<'_> {
             | Self::DiffuseTransmission(_)
             | Self::Principled(_)
             | Self::PrincipledThin(_)
+            | Self::Coated(_)
             | Self::Null => {}
         }
         self
@@ -263,6 +276,7 @@ impl Bsdf<'_> {
             Self::RoughPlastic(model) => model.eval(wo, wi),
             Self::Principled(model) => model.eval(wo, wi),
             Self::PrincipledThin(model) => model.eval(wo, wi),
+            Self::Coated(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
@@ -279,6 +293,7 @@ impl Bsdf<'_> {
             Self::RoughPlastic(model) => model.pdf(wo, wi),
             Self::Principled(model) => model.pdf(wo, wi),
             Self::PrincipledThin(model) => model.pdf(wo, wi),
+            Self::Coated(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
     }
@@ -298,6 +313,7 @@ impl Bsdf<'_> {
             Self::RoughPlastic(model) => model.sample(wo, u_lobe, u),
             Self::Principled(model) => model.sample(wo, u_lobe, u),
             Self::PrincipledThin(model) => model.sample(wo, u_lobe, u),
+            Self::Coated(model) => model.sample(wo, u_lobe, u),
             Self::Null => Some(straight_on(wo)),
         }
     }
@@ -305,7 +321,11 @@ impl Bsdf<'_> {
     /// Whether there is nothing but Dirac lobes, so that light sampling is in vain.
     #[inline]
     pub fn is_specular(&self) -> bool {
-        matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null)
+        match self {
+            Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => true,
+            Self::Coated(model) => model.is_specular(),
+            _ => false,
+        }
     }
 
     /// Whether light can pass to the other side.
@@ -316,7 +336,8 @@ impl Bsdf<'_> {
             | Self::Conductor(_)
             | Self::RoughConductor(_)
             | Self::Plastic(_)
-            | Self::RoughPlastic(_) => false,
+            | Self::RoughPlastic(_)
+            | Self::Coated(_) => false,
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),
@@ -328,7 +349,17 @@ impl Bsdf<'_> {
 }
 
 /// A vertex of every path holds one: no model may make it bigger for all (keep tables and constants in the scene).
-const _: () = assert!(size_of::<Bsdf>() <= 80);
+const _: () = assert!(size_of::<Bsdf>() <= 112);
+
+/// A complex index \[1\] with this reflectance at normal incidence: 1 and `k = 2√r / √(1 − r)`, `r` in [0, 0.9999] (pbrt's
+/// parameter `reflectance`).
+pub fn index_of_reflectance(reflectance: Lanes) -> [Lanes; 2] {
+    let k = reflectance.map(|r| {
+        let r = r.clamp(0.0, 0.9999);
+        2.0 * r.sqrt() / (1.0 - r).sqrt()
+    });
+    [Lanes::ONE, k]
+}
 
 /// The unscattered direction behind a surface that is not there.
 #[inline]

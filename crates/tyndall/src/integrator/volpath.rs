@@ -107,7 +107,7 @@ impl Path {
             Event::Surface(mut hit) => {
                 let skin = if scene.has_bodies() { self.meet(scene, &mut hit, tally) } else { Skin::Written };
                 let sampler = &mut self.sampler;
-                let material = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
+                let (material, relief) = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
                 let (bsdf, disperses) = match (skin, material) {
                     (_, Material::Hole) => {
                         self.pass_opening(scene, &hit);
@@ -120,7 +120,8 @@ impl Path {
                         return Status::Alive;
                     }
                     (Skin::Written, material) => {
-                        (material.bsdf(&(&hit).into(), &self.wavelengths, self.hero), material.disperses())
+                        let bsdf = material.bsdf(&(&hit).into(), &self.wavelengths, self.hero);
+                        (bsdf.seeded(|| sampler.rng.next_u32()), material.disperses())
                     }
                     (Skin::Between { eta, disperses }, material) => {
                         (material.bsdf_between(eta, &(&hit).into(), &self.wavelengths), disperses)
@@ -128,7 +129,7 @@ impl Path {
                 };
                 self.find_emitter(scene, &hit, sink);
                 tally.surface_vertices += 1;
-                let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
+                let vertex = Vertex::met(scene, hit, bsdf, self.ray.dir, relief);
                 self.scatter(scene, settings, &vertex, disperses, sink, tally)
             }
             Event::Scatter { p, phase, emitted } => {
@@ -234,6 +235,10 @@ impl Path {
         if at_limit && !free_passage {
             return self.cut(tally);
         }
+        // What only reflects is another BSDF for each wavelength, if it disperses: they part before light is sampled.
+        if disperses && !vertex.transmits() {
+            self.part_wavelengths();
+        }
         let reference = vertex.reference();
         if vertex.can_use_light_samples() {
             self.sample_light(scene, vertex, &reference, sink, tally);
@@ -326,7 +331,7 @@ impl Path {
     #[inline]
     fn inside_towards(&self, scene: &Scene, vertex: &Vertex, dir: crate::math::Vec3) -> (Inside, &Within) {
         match vertex {
-            Vertex::Surface { hit, .. } if dir.dot(hit.ng) * self.ray.dir.dot(hit.ng) > 0.0 => {
+            Vertex::Surface { hit, .. } if vertex.crosses(self.ray.dir, dir) => {
                 if scene.has_bodies() {
                     return (self.beyond.inside(scene, &self.wavelengths), &self.beyond);
                 }

@@ -5,6 +5,8 @@ use crate::{
     light::Reference,
     math::{Frame, Ray, Vec2, Vec3},
     phase::{Phase, deflect},
+    relief::{Embossed, Relief, unshadowed},
+    scene::{MaterialId, Scene},
     shape::Interaction,
     spectrum::Lanes,
 };
@@ -22,6 +24,8 @@ pub enum Vertex<'s> {
         bsdf: Bsdf<'s>,
         /// Back along the path, local.
         wo: Vec3,
+        /// How a relief shadows itself: α² \[1\].
+        shadowing: Option<f32>,
     },
     /// In a medium.
     Medium {
@@ -54,24 +58,53 @@ pub struct Scattered {
 impl<'s> Vertex<'s> {
     /// A vertex on a surface that a ray along `dir` has hit.
     ///
-    /// Where the shading normal turns away from a ray that the true surface faces, the true normal shades: the two must
-    /// agree on the side that the path comes from, or it would change sides without changing media.
+    /// Where the shading normal of a boundary turns away from a ray that the true surface faces, the true normal shades:
+    /// the two must agree on the side that the path comes from, or it would change sides without changing media. What lets
+    /// no light through has no such trouble, and the shading normal alone decides, as in pbrt and in Mitsuba.
     #[inline]
     pub fn surface(hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3) -> Self {
         let frame = hit.shading_frame();
         let wo = frame.to_local(-dir);
-        if same_side(wo.z, -dir.dot(hit.ng)) {
-            return Self::Surface { hit, frame, bsdf, wo };
+        if may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
+            return Self::Surface { hit, frame, bsdf, wo, shadowing: None };
         }
         let frame = Frame::around(hit.ng);
-        Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir) }
+        Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir), shadowing: None }
+    }
+
+    /// The same on the relief of an embossed material, if there is one.
+    #[inline]
+    pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3, relief: Option<MaterialId>) -> Self {
+        let even = Self::surface(hit, bsdf, dir);
+        match relief.and_then(|id| scene.relief(id)) {
+            Some(relief) => even.embossed(scene, dir, relief),
+            None => even,
+        }
+    }
+
+    #[inline(never)]
+    fn embossed(self, scene: &Scene, dir: Vec3, relief: &Relief) -> Self {
+        let Self::Surface { hit, frame: even, bsdf, wo: even_wo, .. } = self else { return self };
+        if even.n != hit.ns {
+            return self; // the true normal shades
+        }
+        let Embossed { frame, shadowing } = relief.emboss(&scene.geometry, &hit, &even, -dir);
+        let wo = frame.to_local(-dir);
+        let is_seen = shadowing.is_none() || wo.z * even_wo.z > 0.0;
+        if is_seen && may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
+            return Self::Surface { hit, frame, bsdf, wo, shadowing };
+        }
+        if shadowing.is_none() {
+            return self;
+        }
+        Self::Surface { hit, frame: even, bsdf: Bsdf::diffuse(Lanes::ZERO), wo: even_wo, shadowing: None }
     }
 
     /// From where lights are looked at.
     #[inline]
     pub fn reference(&self) -> Reference {
         match self {
-            Self::Surface { hit, frame, bsdf, wo } => {
+            Self::Surface { hit, frame, bsdf, wo, .. } => {
                 let normal = (!bsdf.transmits()).then_some(if wo.z > 0.0 { frame.n } else { -frame.n });
                 Reference { p: hit.p, normal }
             }
@@ -83,6 +116,15 @@ impl<'s> Vertex<'s> {
     #[inline]
     pub fn is_pane(&self) -> bool {
         matches!(self, Self::Surface { bsdf: Bsdf::ThinDielectric(_), .. })
+    }
+
+    /// Whether light can go on beyond.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        match self {
+            Self::Surface { bsdf, .. } => bsdf.transmits(),
+            Self::Medium { .. } => true,
+        }
     }
 
     /// Whether a light sample could contribute at all.
@@ -98,12 +140,16 @@ impl<'s> Vertex<'s> {
     #[inline]
     pub fn eval(&self, dir: Vec3) -> (Lanes, f32) {
         match self {
-            Self::Surface { hit, frame, bsdf, wo } => {
+            Self::Surface { hit, frame, bsdf, wo, shadowing } => {
                 let wi = frame.to_local(dir);
-                if !same_side(wi.z, dir.dot(hit.ng)) {
+                if !may_leave(bsdf, wi.z, dir.dot(hit.ng)) {
                     return (Lanes::ZERO, 0.0);
                 }
-                (bsdf.eval(*wo, wi), bsdf.pdf(*wo, wi))
+                let (value, pdf) = (bsdf.eval(*wo, wi), bsdf.pdf(*wo, wi));
+                match shadowing {
+                    None => (value, pdf),
+                    Some(alpha2) => (value * through_relief(*alpha2, wi.z, dir.dot(hit.ns)), pdf),
+                }
             }
             Self::Medium { dir: travel, phase, .. } => {
                 let value = phase.eval(travel.dot(dir));
@@ -116,14 +162,21 @@ impl<'s> Vertex<'s> {
     #[inline]
     pub fn sample(&self, [u_lobe, u, v]: [f32; 3]) -> Option<Scattered> {
         match self {
-            Self::Surface { hit, frame, bsdf, wo } => {
+            Self::Surface { hit, frame, bsdf, wo, shadowing: Some(alpha2) } => {
+                let mut scattered = sample_surface(hit, frame, bsdf, *wo, u_lobe, Vec2::new(u, v))?;
+                let dir = scattered.ray.dir;
+                scattered.weight *= through_relief(*alpha2, frame.n.dot(dir), dir.dot(hit.ns));
+                Some(scattered)
+            }
+            Self::Surface { hit, frame, bsdf, wo, shadowing: None } => {
                 let u = Vec2::new(u, v);
                 sample_surface(hit, frame, bsdf, *wo, u_lobe, u).or_else(|| {
-                    // A mirror has no other direction to offer: where the shading normal sends it through the surface,
-                    // the true normal shades, so that no light is lost.
+                    // Clear glass has no other direction to offer: where the shading normal sends it to the wrong side of
+                    // the surface, the true normal shades, so that no light is lost.
                     let flat = Frame::around(hit.ng);
                     let wo = flat.to_local(frame.to_world(*wo));
-                    if bsdf.is_specular() { sample_surface(hit, &flat, bsdf, wo, u_lobe, u) } else { None }
+                    let retry = bsdf.is_specular() && bsdf.transmits();
+                    if retry { sample_surface(hit, &flat, bsdf, wo, u_lobe, u) } else { None }
                 })
             }
             Self::Medium { p, dir, phase } => {
@@ -143,6 +196,15 @@ impl<'s> Vertex<'s> {
         }
     }
 
+    /// Whether a ray towards `dir` leaves on the other side of a boundary than that from which one along `travel` came.
+    #[inline]
+    pub fn crosses(&self, travel: Vec3, dir: Vec3) -> bool {
+        match self {
+            Self::Surface { hit, bsdf, .. } => dir.dot(hit.ng) * travel.dot(hit.ng) > 0.0 && bsdf.transmits(),
+            Self::Medium { .. } => false,
+        }
+    }
+
     /// The origin of a shadow ray towards `dir`.
     #[inline]
     pub fn shadow_origin(&self, dir: Vec3) -> Vec3 {
@@ -153,13 +215,12 @@ impl<'s> Vertex<'s> {
     }
 }
 
-/// Draws a direction in the local space `frame`; `None` also where it would be on different sides of the shading and of
-/// the geometric normal.
+/// Draws a direction in the local space `frame`; `None` also where a boundary must not send it.
 #[inline]
 fn sample_surface(hit: &Interaction, frame: &Frame, bsdf: &Bsdf, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<Scattered> {
     let sample = bsdf.sample(wo, u_lobe, u)?;
     let dir = frame.to_world(sample.wi).normalize();
-    same_side(sample.wi.z, dir.dot(hit.ng)).then(|| Scattered {
+    may_leave(bsdf, sample.wi.z, dir.dot(hit.ng)).then(|| Scattered {
         ray: hit.spawn(dir),
         weight: sample.weight,
         pdf: sample.pdf,
@@ -169,8 +230,15 @@ fn sample_surface(hit: &Interaction, frame: &Frame, bsdf: &Bsdf, wo: Vec3, u_lob
     })
 }
 
-/// Whether a direction is on the same side of the shading and of the geometric normal: else it would leak.
+/// The share of the light along a direction that a relief lets through, by its cosines with the normal of the relief and
+/// with the even one: nothing on different sides of them.
+fn through_relief(alpha2: f32, cos_relief: f32, cos_even: f32) -> f32 {
+    if cos_relief * cos_even > 0.0 { unshadowed(alpha2, cos_even) } else { 0.0 }
+}
+
+/// Whether light can come or go where the shading normal and the geometric normal see it at these cosines: on one side
+/// for both, or it would leak through a boundary.
 #[inline]
-fn same_side(local_z: f32, cos_geometric: f32) -> bool {
-    local_z * cos_geometric > 0.0
+fn may_leave(bsdf: &Bsdf, cos_shading: f32, cos_geometric: f32) -> bool {
+    cos_shading * cos_geometric > 0.0 || !bsdf.transmits()
 }

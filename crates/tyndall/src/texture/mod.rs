@@ -117,6 +117,38 @@ impl Texture {
         }
     }
 
+    /// How fast [`Self::scalar`] changes with u and v \[1\], where the place changes by `tangents` [length]: exactly for
+    /// pictures and their products; for others by a step of 0.0005 (which is pbrt's where it knows of no pixels).
+    pub fn gradient(&self, at: &TexturePoint, tangents: [Vec3; 2]) -> Vec2 {
+        match self {
+            Self::Constant(_) => Vec2::ZERO,
+            Self::Scale(of) => {
+                let [a, b] = [0, 1].map(|i| of[i].gradient(at, tangents));
+                a * of[1].scalar(at) + b * of[0].scalar(at)
+            }
+            Self::Image(image) => image.gradient(at).unwrap_or_else(|| self.difference(at, tangents)),
+            _ => self.difference(at, tangents),
+        }
+    }
+
+    fn difference(&self, at: &TexturePoint, [du, dv]: [Vec3; 2]) -> Vec2 {
+        const STEP: f32 = 0.0005;
+        let here = self.scalar(at);
+        let along = |tangent: Vec3, axis: Vec2| {
+            let uv = at.uv + axis * STEP;
+            // What is left of the step after rounding.
+            let step = (uv - at.uv).dot(axis);
+            let there = TexturePoint { p: at.p + tangent * STEP, uv, n: at.n };
+            (self.scalar(&there) - here) / if step > 0.0 { step } else { STEP }
+        };
+        Vec2::new(along(du, Vec2::X), along(dv, Vec2::Y))
+    }
+
+    /// Red, green and blue at a point, as they stand in a picture.
+    pub fn rgb(&self, at: &TexturePoint) -> [f32; 3] {
+        self.vary(at, &|leaf| leaf.channels(at), Vec3::splat).to_array()
+    }
+
     /// The spectrum, if it is the same everywhere.
     pub fn constant(&self) -> Option<&Spectrum> {
         match self {
@@ -173,6 +205,16 @@ impl Texture {
             Self::Image(image) => image.eval(at, wavelengths),
             Self::Marble(marble) => image::reflectance(marble.rgb(at), wavelengths),
             other => Lanes::splat(other.number(at)),
+        }
+    }
+
+    fn channels(&self, at: &TexturePoint) -> Vec3 {
+        match self {
+            Self::Constant(Spectrum::Constant(value)) => Vec3::splat(*value),
+            Self::Constant(spectrum) => Vec3::from_array(spectrum.rgb()),
+            Self::Image(image) => Vec3::from_array(image.rgb(at)),
+            Self::Marble(marble) => Vec3::from_array(marble.rgb(at)),
+            other => Vec3::splat(other.number(at)),
         }
     }
 
