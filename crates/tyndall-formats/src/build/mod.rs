@@ -6,6 +6,7 @@ pub(crate) mod made;
 mod materials;
 mod media;
 mod meshes;
+mod painted;
 mod principled;
 mod shapes;
 mod spectra;
@@ -14,12 +15,18 @@ mod textures;
 #[cfg(test)]
 mod tests;
 
-use std::{collections::HashMap, sync::Arc};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DMat4;
 use tyndall::{
-    bsdf::RoughCoat, film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode,
-    texture::Texture,
+    bsdf::RoughCoat,
+    film::Crop,
+    light::LightTable,
+    math::Transform,
+    scene::Scene,
+    spectrum::ColorMode,
+    texture::{Texture, attribute::Painted},
 };
 
 use crate::{
@@ -55,6 +62,8 @@ struct Builder<'a> {
     /// Coats of rough plastics, each tabulated once.
     coats: Vec<Arc<RoughCoat>>,
     meshes: Meshes,
+    /// Colours of meshes: of vertices, and of faces.
+    painted: [Arc<Painted>; 2],
     made: Made,
 }
 
@@ -67,6 +76,7 @@ impl<'a> Builder<'a> {
             pictures: Pictures::new(),
             coats: Vec::new(),
             meshes: Meshes::new(desc),
+            painted: [Arc::default(), Arc::default()],
             made: Made::new(desc.materials.len()),
         }
     }
@@ -80,9 +90,10 @@ impl Builder<'_> {
                     .help("render it with --color spectral"),
             );
         }
+        // First the shapes: textures may show the colours of meshes.
+        let shapes = self.shapes();
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
-        let shapes = self.shapes();
         let lights = self.lights();
         let camera = shapes.as_ref().and_then(|shapes| self.camera(shapes));
         let mut materials = materials?;

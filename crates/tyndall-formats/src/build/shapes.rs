@@ -13,7 +13,7 @@ use tyndall::{
     texture::TexturePoint,
 };
 
-use super::{Builder, material_id, medium_id, spectra::Measure};
+use super::{Builder, material_id, medium_id, painted::Painting, spectra::Measure};
 use crate::{
     desc::{
         AreaLightDesc, DisplacementDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind,
@@ -38,6 +38,7 @@ struct Gathered<'a> {
     objects: Vec<Object>,
     /// Objects that shine, with what, and how much of them is there.
     emitters: Vec<(ObjectId, &'a AreaLightDesc, f32)>,
+    painting: Painting,
 }
 
 /// The normals of a mesh from a file.
@@ -86,6 +87,7 @@ impl<'a> Builder<'a> {
             Ok(geometry) => geometry,
             Err(e) => return self.fail(SceneError::new(e.to_string())),
         };
+        self.paint(&geometry, gathered.painting);
         let mut lights = Vec::new();
         for (object, emission, opacity) in gathered.emitters {
             let emission = self.emitters(&geometry, object, emission, opacity, &mut lights)?;
@@ -147,10 +149,13 @@ impl<'a> Builder<'a> {
             }
             ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = match displacement {
+                let mut mesh = match displacement {
                     None => self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)),
                     Some(displacement) => self.displaced(path, displacement, &transform)?,
                 };
+                if let Ok(mesh) = &mut mesh {
+                    self.keep_colours(mesh, gathered.objects.len() as u32, &mut gathered.painting);
+                }
                 let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
@@ -300,7 +305,7 @@ impl<'a> Builder<'a> {
     ) -> Option<Result<TriangleMesh, MeshError>> {
         let texture = self.texture(&displacement.height, Measure::Number)?;
         // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
-        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO });
+        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO, part: None });
         let length = |a: Vec3, b: Vec3| {
             let along = transform.matrix.as_dmat4().transform_vector3(b.as_dvec3() - a.as_dvec3());
             along.length()
@@ -426,7 +431,7 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
 }
 
 fn mesh_of(mesh: TriangleMesh) -> Mesh {
-    let TriangleMesh { positions, indices, normals, uvs } = mesh;
+    let TriangleMesh { positions, indices, normals, uvs, .. } = mesh;
     let (normals, uvs) = (normals.unwrap_or_default(), uvs.unwrap_or_default());
     Mesh { positions, indices, normals, uvs, reversed: false }
 }

@@ -98,7 +98,12 @@ impl TextureKind {
             }
             Self::Mix { of, amount } => of.iter().chain([amount]).collect(),
             Self::Bilinear { corners, .. } => corners.iter().collect(),
-            Self::Image(_) | Self::Fbm(_) | Self::Wrinkled(_) | Self::Windy { .. } | Self::Marble { .. } => Vec::new(),
+            Self::Image(_)
+            | Self::Attribute { .. }
+            | Self::Fbm(_)
+            | Self::Wrinkled(_)
+            | Self::Windy { .. }
+            | Self::Marble { .. } => Vec::new(),
         }
     }
 }

@@ -87,7 +87,7 @@ const PLUGINS: &[Plugins] = &[
         ],
         later: &["bsplinecurve", "ellipsoids", "ellipsoidsmesh", "linearcurve", "merge", "sdfgrid"],
     },
-    Plugins { tag: "texture", known: &["bitmap", "checkerboard"], later: &["mesh_attribute", "volume"] },
+    Plugins { tag: "texture", known: &["bitmap", "checkerboard", "mesh_attribute"], later: &["volume"] },
     Plugins { tag: "volume", known: &["constvolume"], later: &["gridvolume"] },
 ];
 

@@ -90,8 +90,7 @@ impl<'s> Vertex<'s> {
         }
         let Embossed { frame, shadowing } = relief.emboss(&scene.geometry, &hit, &even, -dir);
         let wo = frame.to_local(-dir);
-        let is_seen = shadowing.is_none() || wo.z * even_wo.z > 0.0;
-        if is_seen && may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
+        if (wo.z * even_wo.z > 0.0 || !relief.is_mirrored()) && may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
             return Self::Surface { hit, frame, bsdf, wo, shadowing };
         }
         if shadowing.is_none() {

@@ -71,7 +71,7 @@ const FAULTS: &[(&str, &str)] = &[
     ),
     (
         r#"<bsdf type="diffuse"><texture name="reflectance" type="volume"/></bsdf>"#,
-        r#"2:56: the texture "volume" is not known yet | known are "bitmap", "checkerboard""#,
+        r#"2:56: the texture "volume" is not known yet | known are "bitmap", "checkerboard", "mesh_attribute""#,
     ),
     (
         r#"<shape type="cube"><boolean name="flip_normals" value="yes"/></shape>"#,
