@@ -178,6 +178,20 @@ impl Builder<'_> {
         })
     }
 
+    /// Columns and rows of a picture; 1 × 1 for what is none.
+    pub(super) fn picture_size(&mut self, texture: Option<&Spanned<Varying>>) -> [u32; 2] {
+        let scene = self.desc;
+        let kind = match texture.map(|texture| &texture.value) {
+            Some(Varying::Texture(id)) => scene.texture(*id).map(|desc| &desc.kind),
+            _ => None,
+        };
+        let picture = match kind {
+            Some(TextureKind::Image(image)) => self.picture(image),
+            _ => None,
+        };
+        picture.map_or([1, 1], |picture| [picture.width, picture.height])
+    }
+
     fn picture(&mut self, desc: &ImageDesc) -> Option<Arc<Picture>> {
         let is_it =
             |(path, encoding, _): &&(PathBuf, Encoding, _)| *path == desc.path.value && *encoding == desc.encoding;

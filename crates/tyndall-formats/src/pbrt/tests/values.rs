@@ -81,7 +81,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
         assert_eq!(light.to_world.transform_vector3(DVec3::Z), DVec3::Z);
     }
     assert!(matches!(constant.kind, LightKind::Constant { .. }));
-    let LightKind::Environment { path, scale, mapping } = &sky.kind else { panic!() };
+    let LightKind::Environment { path, scale, mapping, .. } = &sky.kind else { panic!() };
     assert_eq!((path.value.to_str(), *scale), (Some("sky.exr"), 2.0));
     assert_eq!(*mapping, EnvironmentMapping::EqualAreaOctahedral);
 }
