@@ -79,8 +79,9 @@ struct Job<'a> {
 impl Job<'_> {
     fn render(&self) -> Rendering {
         let Self { options, loaded, settings, .. } = self;
-        let max_depth = options.max_depth.or(loaded.desc.integrator.max_depth.map(|depth| depth.value));
-        let integrator = integrator(options.integrator, max_depth);
+        let said = &loaded.desc.integrator;
+        let max_depth = options.max_depth.or(said.max_depth.map(|depth| depth.value));
+        let integrator = integrator(options.integrator, max_depth, said.counted);
         let camera = &loaded.scene.camera;
         let crop = settings.crop.unwrap_or(Crop::full(camera.width, camera.height));
         let pixels = u64::from(crop.width()) * u64::from(crop.height());

@@ -141,6 +141,17 @@ impl Builder<'_> {
                     SceneError::at(g.span, e.to_string()).help("g is the mean cosine: 0 isotropic, towards 1 forward"),
                 ),
             },
+            PhaseDesc::Tabulated { values } => match Phase::tabulated(&values.value) {
+                Ok(phase) => Some(phase),
+                Err(e) => self.fail(SceneError::at(values.span, e.to_string())),
+            },
+            PhaseDesc::Blend { of, weight } => {
+                let [first, second] = [self.phase(&of[0])?, self.phase(&of[1])?];
+                match Phase::blend(&first, &second, weight.value as f32) {
+                    Ok(phase) => Some(phase),
+                    Err(e) => self.fail(SceneError::at(weight.span, e.to_string())),
+                }
+            }
         }
     }
 }

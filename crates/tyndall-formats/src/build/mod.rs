@@ -8,6 +8,7 @@ mod materials;
 mod media;
 mod meshes;
 mod painted;
+mod principled;
 mod shapes;
 mod spectra;
 mod textures;
@@ -20,6 +21,7 @@ use std::sync::Arc;
 
 use glam::DMat4;
 use tyndall::{
+    bsdf::RoughCoat,
     film::Crop,
     light::LightTable,
     math::Transform,
@@ -58,6 +60,8 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    /// Coats of rough plastics, each tabulated once.
+    coats: Vec<Arc<RoughCoat>>,
     meshes: Meshes,
     /// Colours of meshes: of vertices, and of faces.
     painted: [Arc<Painted>; 2],
@@ -71,6 +75,7 @@ impl<'a> Builder<'a> {
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            coats: Vec::new(),
             meshes: Meshes::new(desc),
             painted: [Arc::default(), Arc::default()],
             made: Made::new(desc.materials.len()),

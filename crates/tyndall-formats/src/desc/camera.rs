@@ -146,6 +146,8 @@ pub struct FrameDesc {
     pub aspect: Option<Spanned<f64>>,
     /// pbrt's screen window `[x_min, x_max, y_min, y_max]`; it replaces the aspect.
     pub screen_window: Option<Spanned<[f64; 4]>>,
+    /// How far the picture lies to the right of that and below, in its own width and height (Mitsuba's principal point).
+    pub offset: [f64; 2],
 }
 
 /// The part of a plane that the whole film sees (a crop is a part of it).
@@ -198,11 +200,18 @@ impl CameraDesc {
 impl FrameDesc {
     /// The whole film, by one of its sides.
     pub fn of_film(axis: FovAxis) -> Self {
-        Self { axis, aspect: None, screen_window: None }
+        Self { axis, aspect: None, screen_window: None, offset: [0.0; 2] }
     }
 
     /// What a picture of `width` × `height` sees of a plane in which half of its reference side is `half`.
     pub(crate) fn window(&self, half: f64, width: u32, height: u32) -> ImageWindow {
+        let ImageWindow { left, right, bottom, top } = self.centred(half, width, height);
+        let [right_by, down_by] = self.offset;
+        let (x, y) = ((right - left) * right_by, (bottom - top) * down_by);
+        ImageWindow { left: left + x, right: right + x, bottom: bottom + y, top: top + y }
+    }
+
+    fn centred(&self, half: f64, width: u32, height: u32) -> ImageWindow {
         if let Some(Spanned { value: [left, right, bottom, top], .. }) = self.screen_window {
             return ImageWindow { left: left * half, right: right * half, bottom: bottom * half, top: top * half };
         }

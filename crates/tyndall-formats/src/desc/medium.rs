@@ -62,7 +62,7 @@ pub enum Coefficients {
 }
 
 /// A phase function.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PhaseDesc {
     /// The same in all directions.
     Isotropic,
@@ -73,6 +73,18 @@ pub enum PhaseDesc {
     },
     /// Rayleigh's, of particles far smaller than the wavelength.
     Rayleigh,
+    /// By a table (Mitsuba).
+    Tabulated {
+        /// Relative values at regularly spaced cosines, from -1 (straight back) to 1 (straight on).
+        values: Spanned<Vec<f64>>,
+    },
+    /// Two others, weighed (Mitsuba).
+    Blend {
+        /// They.
+        of: Box<[Self; 2]>,
+        /// How much of the second, in [0, 1].
+        weight: Spanned<f64>,
+    },
 }
 
 /// What is on either side of a surface. `None` is empty space.

@@ -22,6 +22,7 @@ mod camera;
 mod light;
 mod material;
 mod medium;
+mod principled;
 mod settings;
 mod shape;
 mod spectrum;
@@ -42,6 +43,7 @@ pub use material::{
     ShadowingKind,
 };
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
+pub use principled::{BurleyDesc, PrincipledDesc, PrincipledThinDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
 pub use shape::{DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 pub use spectrum::SpectrumDesc;

@@ -55,7 +55,12 @@ impl MaterialKind {
                 reflection_tint.iter().chain(transmission_tint).collect()
             }
             Self::DiffuseTransmission { reflectance, transmittance, .. } => vec![reflectance, transmittance],
-            Self::Plastic { reflectance, tint, .. } => [reflectance].into_iter().chain(tint).collect(),
+            Self::Plastic { reflectance, roughness, tint, .. } => {
+                let roughness = roughness.iter().flat_map(RoughnessDesc::quantities);
+                [reflectance].into_iter().chain(roughness).chain(tint).collect()
+            }
+            Self::Principled(solid) => solid.quantities(),
+            Self::PrincipledThin(sheet) => sheet.quantities(),
             Self::Coated(coated) => coated.quantities(),
             Self::Mix { amount, .. } => vec![amount],
             Self::Mask { opacity, .. } => vec![opacity],

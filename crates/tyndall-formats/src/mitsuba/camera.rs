@@ -17,6 +17,10 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
+/// What a sensor's response would be.
+const NO_RESPONSE: &str =
+    "a response weighs wavelengths, in Mitsuba's spectral variants only: here the film sees as the eye does";
+
 /// The largest film \[pixels a side\].
 const LARGEST_SIDE: u32 = 1 << 16;
 
@@ -71,10 +75,14 @@ fn camera<'t>(
         "perspective" | "thinlens" => {
             let (fov, axis) = field_of_view(&mut object, report);
             let lens = (plugin == "thinlens").then(|| thin_lens(&mut object, report)).flatten();
-            object.not_yet(&["principal_point_offset_x", "principal_point_offset_y"], report);
+            let offset = match plugin {
+                "perspective" => ["principal_point_offset_x", "principal_point_offset_y"]
+                    .map(|name| object.float(name, |_| true, "a number", report).map_or(0.0, |offset| offset.value)),
+                _ => [0.0; 2],
+            };
             to_world = object.transform(report);
             check_rigid(to_world, object.element, report);
-            CameraKind::Perspective { fov, frame: FrameDesc::of_film(axis), lens }
+            CameraKind::Perspective { fov, frame: FrameDesc { offset, ..FrameDesc::of_film(axis) }, lens }
         }
         "orthographic" => {
             to_world = object.transform(report);
@@ -107,7 +115,7 @@ fn camera<'t>(
         object.ignore(&["focus_distance"], "without a lens everything is in focus", report);
     }
     object.ignore(&["shutter_open", "shutter_close"], "nothing moves", report);
-    object.not_yet(&["srf"], report);
+    object.ignore(&["srf"], NO_RESPONSE, report);
     object.finish(report);
     let to_world = to_world * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     Some(CameraDesc { span, to_world, kind, medium })

@@ -13,6 +13,7 @@ use glam::{DMat4, DQuat, DVec3};
 use super::camera::field_of_view;
 use super::object::{Object, Report};
 use super::scene::Builder;
+use super::texture::Answer;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
@@ -54,7 +55,8 @@ impl<'t> Builder<'t> {
         let Some(child) = object.object_of(name, "texture") else {
             return (object.light(name, &mut self.report), None);
         };
-        let texture = self.texture(child.element).map(|id| Spanned::new(Varying::Texture(id), child.at.span));
+        let texture =
+            self.texture(child.element, Answer::Colour).map(|id| Spanned::new(Varying::Texture(id), child.at.span));
         let spectrum = Spanned::new(SpectrumDesc::Rgb([1.0; 3]), child.at.span);
         (EmissionDesc { spectrum, scale: 1.0, magnitude: Magnitude::AsWritten }, texture)
     }
@@ -112,7 +114,7 @@ impl<'t> Builder<'t> {
     /// The texture in front of a spot.
     fn slide(&mut self, object: &mut Object<'t>) -> Option<Spanned<Varying>> {
         let child = object.object_of("texture", "texture")?;
-        Some(Spanned::new(Varying::Texture(self.texture(child.element)?), child.at.span))
+        Some(Spanned::new(Varying::Texture(self.texture(child.element, Answer::Colour)?), child.at.span))
     }
 }
 

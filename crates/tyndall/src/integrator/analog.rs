@@ -53,12 +53,12 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
         let (vertex, beyond) = match hit {
             None if flight.is_finite() => {
                 tally.collisions += 1;
-                let (id, phase, share) = match &inside {
+                let (id, share) = match &inside {
                     Inside::Vacuum => return radiance,
-                    Inside::Medium { id, phase, .. } => (*id, *phase, 1.0),
+                    Inside::Medium { id, .. } => (*id, 1.0),
                     Inside::Mixture { .. } => match within.choose_part(scene, w, lane, sampler.next_1d()) {
                         None => return radiance,
-                        Some(part) => (part.id, part.phase, part.share.lane(lane) / part.probability.lane(lane)),
+                        Some(part) => (part.id, part.share.lane(lane) / part.probability.lane(lane)),
                     },
                 };
                 let p = ray.at(flight);
@@ -71,7 +71,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                     return if source > 0.0 { radiance + throughput * source / (sigma_t - sigma_s) } else { radiance };
                 }
                 throughput *= share; // 0 where nothing scatters, else 1
-                (Vertex::Medium { p, dir: ray.dir, phase }, within)
+                (Vertex::Medium { p, dir: ray.dir, phase: &scene.medium(id).phase }, within)
             }
             None => {
                 let sky = scene

@@ -82,8 +82,8 @@ type Record = u32;
 
 /// A point `x` or `y` of the slides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
-    place: Place,
+pub(super) struct Point<'s> {
+    place: Place<'s>,
     /// What was around it on the side from which it was reached.
     within: Record,
     /// The medium there.
@@ -93,24 +93,24 @@ pub(super) struct Point {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Place {
+enum Place<'s> {
     Eye(Vec3),
     Surface {
         hit: Interaction,
-        bsdf: Bsdf,
+        bsdf: Bsdf<'s>,
         relief: Option<MaterialId>,
         from_outside: bool,
         beyond: Record,
     },
     Collision {
         p: Vec3,
-        phase: Phase,
+        phase: &'s Phase,
     },
     /// Seen from a point.
     Infinity(Vec3),
 }
 
-impl Point {
+impl<'s> Point<'s> {
     /// Whether there is no material: light goes straight on.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.place, Place::Surface { bsdf: Bsdf::Null, .. })
@@ -136,7 +136,7 @@ impl Point {
     }
 
     /// The vertex of the renderer that this point is, seen along `ω`.
-    fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex> {
+    fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex<'s>> {
         match self.place {
             Place::Surface { hit, bsdf, relief, .. } => Some(Vertex::met(scene, hit, bsdf, -omega, relief)),
             Place::Collision { p, phase } => Some(Vertex::Medium { p, dir: omega, phase }),
@@ -188,7 +188,7 @@ impl<'a> World<'a> {
     }
 
     /// The eye at `p`.
-    pub(super) fn eye(&self, p: Vec3) -> Point {
+    pub(super) fn eye(&self, p: Vec3) -> Point<'a> {
         Point { place: Place::Eye(p), within: 0, inside: self.inside(0), distance: 0.0 }
     }
 
@@ -215,7 +215,7 @@ impl<'a> World<'a> {
     }
 
     /// `y = traceRay(x, ω)`: the first surface, or infinity; `None` when the recursion is too deep.
-    pub(super) fn trace_ray(&mut self, x: &Point, omega: Vec3) -> Option<Point> {
+    pub(super) fn trace_ray(&mut self, x: &Point, omega: Vec3) -> Option<Point<'a>> {
         if self.depth >= MAX_DEPTH {
             return None;
         }
@@ -264,7 +264,7 @@ impl<'a> World<'a> {
     }
 
     /// `traceRay` past all surfaces without a material, whatever they emit.
-    pub(super) fn trace_ray_past_openings(&mut self, x: &Point, omega: Vec3) -> Option<Point> {
+    pub(super) fn trace_ray_past_openings(&mut self, x: &Point, omega: Vec3) -> Option<Point<'a>> {
         let mut y = self.trace_ray(x, omega)?;
         while y.is_open() {
             y = self.trace_ray(&y, omega)?;
@@ -296,12 +296,13 @@ impl<'a> World<'a> {
     }
 
     /// The collision `x′ = x + sω` before `y`. One that rounding has carried out of its medium is tallied, and black.
-    pub(super) fn collision(&mut self, x: &Point, s: f32, omega: Vec3, y: &Point) -> Point {
+    pub(super) fn collision(&mut self, x: &Point, s: f32, omega: Vec3, y: &Point) -> Point<'a> {
         let p = self.leave(x, omega).0.at(s);
         match self.scatterer(y) {
-            Some((id, phase)) if self.scene.may_contain(id, p) => {
+            Some(id) if self.scene.may_contain(id, p) => {
                 self.tally.collisions += 1;
-                Point { place: Place::Collision { p, phase }, within: y.within, inside: y.inside, distance: s }
+                let place = Place::Collision { p, phase: &self.scene.medium(id).phase };
+                Point { place, within: y.within, inside: y.inside, distance: s }
             }
             _ => {
                 self.tally.leaks += 1;
@@ -311,14 +312,14 @@ impl<'a> World<'a> {
     }
 
     /// The medium that scatters on the way to `y`: where several share the place, one of them by chance.
-    fn scatterer(&mut self, y: &Point) -> Option<(MediumId, Phase)> {
+    fn scatterer(&mut self, y: &Point) -> Option<MediumId> {
         match y.inside {
             Inside::Vacuum => None,
-            Inside::Medium { id, phase, .. } => Some((id, phase)),
+            Inside::Medium { id, .. } => Some(id),
             Inside::Mixture { .. } => {
                 let u = self.random();
                 let part = self.records[y.within as usize].choose_part(self.scene, &self.wavelengths, self.lane, u)?;
-                Some((part.id, part.phase))
+                Some(part.id)
             }
         }
     }

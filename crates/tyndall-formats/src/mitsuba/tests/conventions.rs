@@ -317,7 +317,7 @@ fn a_medium_takes_constant_volumes_and_rayleigh_scattering() {
     ))
     .media[0];
     let Coefficients::ExtinctionAlbedo { sigma_t, .. } = &medium.coefficients else { panic!() };
-    assert_eq!((&sigma_t.value, medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), PhaseDesc::Rayleigh));
+    assert_eq!((&sigma_t.value, &medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), &PhaseDesc::Rayleigh));
 }
 
 /// Mitsuba's conductor without a material has eta = 0 and k = 1 unless told.
@@ -408,4 +408,18 @@ fn the_v_of_a_sphere_runs_down() {
     assert_eq!(to_world.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(to_world.transform_vector3(DVec3::Z), -DVec3::Z);
     assert_eq!(to_world.transform_vector3(DVec3::X), DVec3::X);
+}
+
+/// With a field of view of 90° the picture spans −1 to 1 of the plane z = 1, −½ to ½ upright. Half its width to the right
+/// and a quarter of its height down, it spans 0 to 2, and −¾ to ¼.
+#[test]
+fn the_principal_point_moves_the_picture_over_the_view() {
+    let camera = camera(
+        "<float name=\"fov\" value=\"90\"/><float name=\"principal_point_offset_x\" value=\"0.5\"/>\
+         <float name=\"principal_point_offset_y\" value=\"0.25\"/>",
+    );
+    let window = camera.window(200, 100).unwrap();
+    for (found, expected) in [(window.left, 0.0), (window.right, 2.0), (window.bottom, -0.75), (window.top, 0.25)] {
+        assert!((found - expected).abs() < 1e-12, "{window:?}");
+    }
 }

@@ -69,7 +69,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
     let medium = &desc.media[0];
     let Coefficients::AbsorptionScattering { sigma_a, sigma_s } = &medium.coefficients else { panic!() };
     assert_eq!((&sigma_a.value, &sigma_s.value), (&SpectrumDesc::Constant(1.0), &SpectrumDesc::Constant(1.0)));
-    assert_eq!((medium.phase, medium.scale.value, &medium.emission), (PhaseDesc::Isotropic, 1.0, &None));
+    assert_eq!((&medium.phase, medium.scale.value, &medium.emission), (&PhaseDesc::Isotropic, 1.0, &None));
 
     let [point, spot, distant, constant, sky] = &desc.lights[..] else { panic!() };
     let LightKind::Point { intensity } = &point.kind else { panic!() };
