@@ -54,7 +54,7 @@ impl Model {
 }
 
 /// A half-space as diffusion sees it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct HalfSpace {
     substance: Substance,
     phase: Phase,

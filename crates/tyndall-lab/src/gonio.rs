@@ -196,9 +196,11 @@ pub fn measure(
 /// Something that is sampled and evaluated.
 trait Scatterer: Sync {
     /// What light meets.
-    type Met: Scattering;
+    type Met<'s>: Scattering
+    where
+        Self: 's;
     /// Light comes in; what it meets is drawn at random.
-    fn meet(&self, rng: &mut Rng) -> Self::Met;
+    fn meet<'s>(&'s self, rng: &mut Rng) -> Self::Met<'s>;
 }
 
 /// What light has met.
@@ -424,25 +426,25 @@ impl Detector for Recorder {
 
 /// A phase function in a medium without end.
 impl Scatterer for Phase {
-    type Met = Self;
+    type Met<'s> = &'s Self;
 
-    fn meet(&self, _rng: &mut Rng) -> Self {
-        *self
+    fn meet<'s>(&'s self, _rng: &mut Rng) -> &'s Self {
+        self
     }
 }
 
-impl Scattering for Phase {
+impl Scattering for &Phase {
     fn travel(&self) -> Vec3 {
         Vec3::Z
     }
 
     fn sample(&self, rng: &mut Rng) -> Option<(Vec3, [f64; 3], bool)> {
-        let cosine = Self::sample(self, rng.next_1d());
+        let cosine = Phase::sample(self, rng.next_1d());
         Some((tyndall::phase::deflect(Vec3::Z, cosine, rng.next_1d()), [1.0; 3], false))
     }
 
     fn eval(&self, dir: Vec3) -> [f64; 3] {
-        [f64::from(Self::eval(self, dir.z)); 3]
+        [f64::from(Phase::eval(self, dir.z)); 3]
     }
 }
 

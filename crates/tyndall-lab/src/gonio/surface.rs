@@ -74,7 +74,7 @@ impl Surface {
         Some(self.scene.geometry.interaction(&ray, &hit))
     }
 
-    fn meet_surface(&self, rng: &mut Rng) -> Option<Met> {
+    fn meet_surface(&self, rng: &mut Rng) -> Option<Met<'_>> {
         let hit = self.hit(rng)?;
         let (material, relief) = self.scene.meet(&hit, self.travel, || rng.next_1d());
         let wavelengths = Wavelengths::sample(self.scene.color, rng.next_1d());
@@ -85,23 +85,23 @@ impl Surface {
 }
 
 impl Scatterer for Surface {
-    type Met = Option<Met>;
+    type Met<'s> = Option<Met<'s>>;
 
-    fn meet(&self, rng: &mut Rng) -> Option<Met> {
+    fn meet<'s>(&'s self, rng: &mut Rng) -> Option<Met<'s>> {
         self.meet_surface(rng)
     }
 }
 
 /// A place on the surface.
 #[derive(Debug)]
-pub(super) struct Met {
-    vertex: Vertex,
+pub(super) struct Met<'s> {
+    vertex: Vertex<'s>,
     travel: Vec3,
     eta: f32,
 }
 
 /// At the very edge of the square light may pass it by.
-impl Scattering for Option<Met> {
+impl Scattering for Option<Met<'_>> {
     fn travel(&self) -> Vec3 {
         self.as_ref().map_or(Vec3::NEG_Z, |met| met.travel)
     }

@@ -107,8 +107,8 @@ fn a_phase_function_has_its_mean_cosine() {
 fn a_density_that_is_wrong_is_found() {
     struct Wrong(f32, f32);
     impl Scatterer for Wrong {
-        type Met = Self;
-        fn meet(&self, _rng: &mut Rng) -> Self {
+        type Met<'s> = Self;
+        fn meet<'s>(&'s self, _rng: &mut Rng) -> Self {
             Self(self.0, self.1)
         }
     }
@@ -118,11 +118,11 @@ fn a_density_that_is_wrong_is_found() {
         }
         fn sample(&self, rng: &mut Rng) -> Option<(Vec3, [f64; 3], bool)> {
             let phase = Phase::henyey_greenstein(0.5).unwrap();
-            Scattering::sample(&phase, rng)
+            Scattering::sample(&&phase, rng)
         }
         fn eval(&self, dir: Vec3) -> [f64; 3] {
             let phase = Phase::henyey_greenstein(self.1).unwrap();
-            Scattering::eval(&phase, dir).map(|v| v * f64::from(self.0))
+            Scattering::eval(&&phase, dir).map(|v| v * f64::from(self.0))
         }
     }
     let layout = Layout { map: MAP, channels: 1, evaluated: true };

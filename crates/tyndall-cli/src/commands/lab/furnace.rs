@@ -11,6 +11,7 @@ use anyhow::{bail, ensure};
 use statrs::distribution::{ContinuousCDF, Normal};
 use tyndall::{
     film::Film,
+    integrator::Counted,
     render::{self, Observer, Rendering, Settings, render},
     sampling::SamplerKind,
     scene::Scene,
@@ -90,7 +91,7 @@ fn scene(options: &FurnaceOptions, color: ColorMode) -> anyhow::Result<(SceneDes
     let (desc, scene) = match (&options.scene, &options.material) {
         (Some(file), _) => {
             let input = SceneOptions { scene: file.clone(), define: options.define.clone(), lenient: options.lenient };
-            let loaded = load(&input, options.resolution, color)?;
+            let loaded = load(&input, options.resolution, Some(color))?;
             loaded.warn();
             (loaded.desc, loaded.scene)
         }
@@ -156,7 +157,7 @@ fn image(options: &FurnaceOptions, scene: &Scene) -> Rendering {
         error: measurement.error,
         enough: AtomicBool::new(false),
     };
-    let rendering = render(scene, integrator(options.integrator, None).as_ref(), &settings, &watch);
+    let rendering = render(scene, integrator(options.integrator, None, Counted::default()).as_ref(), &settings, &watch);
     watch.progress.finish();
     rendering
 }

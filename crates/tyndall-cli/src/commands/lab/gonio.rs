@@ -45,7 +45,7 @@ pub(super) fn run(options: &GonioOptions) -> anyhow::Result<Report> {
 fn specimen(options: &GonioOptions) -> anyhow::Result<(String, Specimen)> {
     let angle = options.angle;
     let cosine = angle.to_radians().cos() * if options.inside { -1.0 } else { 1.0 };
-    if let Some(phase) = options.phase {
+    if let Some(phase) = options.phase.clone() {
         return Ok((format!("a phase function of mean cosine {}", phase.mean_cosine()), Specimen::Phase(phase)));
     }
     if let Some(grain) = options.grain {
@@ -71,7 +71,7 @@ fn specimen(options: &GonioOptions) -> anyhow::Result<(String, Specimen)> {
 /// A material of a scene file by its name.
 fn of_scene(file: &Path, name: &str, options: &GonioOptions) -> anyhow::Result<(tyndall::scene::Scene, MaterialId)> {
     let input = SceneOptions { scene: file.to_owned(), define: options.define.clone(), lenient: options.lenient };
-    let loaded = load(&input, None, ColorMode::Rgb)?;
+    let loaded = load(&input, None, Some(ColorMode::Rgb))?;
     loaded.warn();
     let materials = &loaded.desc.materials;
     let known = || materials.iter().filter_map(|m| m.name.as_deref()).collect::<Vec<_>>().join(", ");
