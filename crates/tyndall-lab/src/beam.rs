@@ -269,14 +269,15 @@ pub fn extent(mesh: &Mesh) -> (DVec3, DVec3) {
     corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
+/// Each face of a box by its corners, anticlockwise as seen from outside.
+const FACES: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+
 /// A box around the origin, its normals outwards.
 fn cuboid(edges: DVec3) -> Mesh {
     let corner = |i: u32| {
         let sign = |bit: u32| if i >> bit & 1 == 1 { 0.5 } else { -0.5 };
         (DVec3::new(sign(0), sign(1), sign(2)) * edges).as_vec3()
     };
-    // Each face by its corners, anticlockwise as seen from outside.
-    const FACES: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let halves = FACES.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
     Mesh { positions: (0..8).map(corner).collect(), indices: halves.collect(), ..Mesh::default() }
 }

@@ -46,7 +46,9 @@ pub fn furnace(scene: Scene, lossless: bool) -> Result<Scene, SetupError> {
         return Err(SetupError::Missing("radiance in what this camera measures: put another into the scene"));
     }
     (camera.filter, camera.exposure, camera.layers) = (Filter::default(), 1.0, Vec::new());
-    objects.iter_mut().for_each(|object| object.emission = Emission::None);
+    for object in &mut objects {
+        object.emission = Emission::None;
+    }
     for medium in &mut media {
         medium.emission = None;
         if lossless {

@@ -41,7 +41,7 @@ use crate::world::{SetupError, Substance, within};
 #[derive(Debug)]
 pub enum Specimen {
     /// A material.
-    Surface(Surface),
+    Surface(Box<Surface>),
     /// A phase function.
     Phase(Phase),
     /// Plane layers, by the incidence of the setup.
@@ -84,7 +84,7 @@ impl Map {
     }
 
     /// A direction of a pixel, for two numbers in [0, 1).
-    fn direction(&self, pixel: usize, [u, v]: [f32; 2]) -> Vec3 {
+    fn direction(self, pixel: usize, [u, v]: [f32; 2]) -> Vec3 {
         let (row, column) = (pixel / self.columns as usize, pixel % self.columns as usize);
         let z = 1.0 - 2.0 * (row as f32 + u) / self.rows as f32;
         let (sin, cos) = ((column as f32 + v) / self.columns as f32 * TAU - PI).sin_cos();
@@ -92,7 +92,7 @@ impl Map {
         Vec3::new(r * cos, r * sin, z)
     }
 
-    fn check(&self) -> Result<(), SetupError> {
+    fn check(self) -> Result<(), SetupError> {
         for count in [self.rows, self.columns] {
             within("the rows and columns of a map", f64::from(count), "from 2 to 512", |_| (2..=512).contains(&count))?;
         }
@@ -168,7 +168,7 @@ pub fn measure(
     let evaluated = Layout { evaluated: true, ..layout };
     let (layout, sums) = match specimen {
         Specimen::Surface(surface) => {
-            let batch = |number| sample(surface, &evaluated, number, seed);
+            let batch = |number| sample(&**surface, &evaluated, number, seed);
             (evaluated, run(evaluated.quantities(), photons, batch, look))
         }
         Specimen::Phase(phase) => {

@@ -24,7 +24,7 @@ fn scene(material: Material) -> Scene {
 }
 
 fn surface(material: Material, cosine: f64) -> Specimen {
-    Specimen::Surface(Surface::new(scene(material), MaterialId(0), cosine).unwrap())
+    Specimen::Surface(Box::new(Surface::new(scene(material), MaterialId(0), cosine).unwrap()))
 }
 
 fn glass(alpha: f32) -> Material {
@@ -108,7 +108,7 @@ fn a_density_that_is_wrong_is_found() {
     struct Wrong(f32, f32);
     impl Scatterer for Wrong {
         type Met<'s> = Self;
-        fn meet<'s>(&'s self, _rng: &mut Rng) -> Self {
+        fn meet(&self, _rng: &mut Rng) -> Self {
             Self(self.0, self.1)
         }
     }

@@ -67,7 +67,7 @@ pub(super) fn run(options: &BeamOptions) -> anyhow::Result<Report> {
             options.decades,
         )?;
     }
-    Ok(tell(title, &radii, &substances, &measured)?)
+    tell(title, options.spot, &radii, &substances, &measured)
 }
 
 fn measure(options: &BeamOptions, setup: &Setup, channel: usize, channels: usize) -> anyhow::Result<Measured> {
@@ -183,7 +183,13 @@ fn scales(options: &BeamOptions, body: &Body, substances: &[Substance]) -> (Edge
     (edges, width)
 }
 
-fn tell(title: String, radii: &Edges, substances: &[Substance], measured: &[Measured]) -> anyhow::Result<Report> {
+fn tell(
+    title: String,
+    spot: f64,
+    radii: &Edges,
+    substances: &[Substance],
+    measured: &[Measured],
+) -> anyhow::Result<Report> {
     let named = |what: &str, channel: usize| match substances.len() {
         1 => what.to_owned(),
         _ => format!("{what}, {}", CHANNELS[channel]),
@@ -203,7 +209,8 @@ fn tell(title: String, radii: &Edges, substances: &[Substance], measured: &[Meas
             of: "radius",
             of_unit: "mm",
             bins: (0..radii.count()).map(|i| bin(radii.bin(i), m.by_radius[i])).collect(),
-            models: models(substance, radii)?,
+            // The theories are of a beam without width.
+            models: if spot > 0.0 { Vec::new() } else { models(substance, radii)? },
         });
     }
     Ok(Report { title, photons: measured.iter().map(|m| m.photons).sum(), figures, curves, verdict: None, polar: None })

@@ -31,7 +31,7 @@ use super::{
     bin, figure,
     options::FurnaceOptions,
     picture,
-    report::{Curve, Figure, Model, Report},
+    report::{Curve, Figure, Model, Report, chance},
 };
 use crate::{
     args::{ColorName, SceneOptions},
@@ -296,18 +296,16 @@ fn verdict(balance: &Balance, judgement: &Judgement) -> String {
     };
     let (bright, dark) = (place(judgement.brightest(), f64::max), place(judgement.darkest(), f64::min));
     let taken = 1.0 - balance.escaped.mean;
+    let (made, lost) = (chance(judgement.p_made), chance(judgement.p_lost));
     match (judgement.p_made < ALPHA, judgement.p_lost < ALPHA) {
-        (true, _) => format!("Energy is MADE (p = {:.1e}): most in the {bright}.", judgement.p_made),
+        (true, _) => format!("Energy is MADE ({made}): most in the {bright}."),
         (false, true) => format!(
-            "Energy is lost (p = {:.1e}), none is made (p = {:.2}): most in the {dark}; what is named above has taken \
-             {:.3} % of the light.",
-            judgement.p_lost,
-            judgement.p_made,
+            "Energy is lost ({lost}), none is made ({made}): most in the {dark}; what is named above has taken {:.3} % of the \
+             light.",
             100.0 * taken
         ),
-        (false, false) => format!(
-            "Energy is kept: made p = {:.2}, lost p = {:.2}. Farthest off are the {bright} and the {dark}.",
-            judgement.p_made, judgement.p_lost
-        ),
+        (false, false) => {
+            format!("Energy is kept (made: {made}, lost: {lost}). Farthest off are the {bright} and the {dark}.")
+        }
     }
 }

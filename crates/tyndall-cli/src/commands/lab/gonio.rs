@@ -7,7 +7,10 @@ use std::{
 
 use anyhow::{Context, bail, ensure};
 use glam::Vec3;
-use tyndall::{scene::MaterialId, spectrum::ColorMode};
+use tyndall::{
+    scene::{MaterialId, Scene},
+    spectrum::ColorMode,
+};
 use tyndall_formats::film::{Channel, Image, exr, png};
 use tyndall_lab::{
     gonio::{Agreement, Map, Measured, Specimen, Surface, exact_grain, measure},
@@ -21,9 +24,13 @@ use super::{
     options::GonioOptions,
     picture,
     polar::{Line, Polar},
-    report::{Curve, Figure, Model, Report},
+    report::{Curve, Figure, Model, Report, chance},
 };
-use crate::{args::SceneOptions, load::load, outputs::is_png};
+use crate::{
+    args::SceneOptions,
+    load::{Loaded, load},
+    outputs::is_png,
+};
 
 /// Edge of the picture of a hemisphere [pixels].
 const DISC: u32 = 256;
@@ -59,29 +66,49 @@ fn specimen(options: &GonioOptions) -> anyhow::Result<(String, Specimen)> {
         let setup = Setup { layers, n_above: 1.0, n_below: 1.0, incidence, bins: Bins::default() };
         return Ok((format!("{} layers, lit at {angle}°", options.layer.len()), Specimen::Slab(setup)));
     }
+    if let (Some(file), Some(medium)) = (&options.scene, &options.medium) {
+        let loaded = read(file, options)?;
+        let names: Vec<_> = loaded.desc.media.iter().map(|m| m.name.as_deref()).collect();
+        let id = place_of(medium, "medium", &names, file)?;
+        return Ok((format!("the medium {medium}"), Specimen::Phase(loaded.scene.media[id].phase.clone())));
+    }
     let Some(material) = &options.material else { bail!("name a --material, --phase, --layer or --grain") };
     let (scene, id) = match &options.scene {
         Some(file) => of_scene(file, material, options)?,
         None => in_words(material)?,
     };
     let side = if options.inside { "inside" } else { "outside" };
-    Ok((format!("{material}, lit from {side} at {angle}°"), Specimen::Surface(Surface::new(scene, id, cosine)?)))
+    Ok((
+        format!("{material}, lit from {side} at {angle}°"),
+        Specimen::Surface(Box::new(Surface::new(scene, id, cosine)?)),
+    ))
 }
 
-/// A material of a scene file by its name.
-fn of_scene(file: &Path, name: &str, options: &GonioOptions) -> anyhow::Result<(tyndall::scene::Scene, MaterialId)> {
+/// A scene file.
+fn read(file: &Path, options: &GonioOptions) -> anyhow::Result<Loaded> {
     let input = SceneOptions { scene: file.to_owned(), define: options.define.clone(), lenient: options.lenient };
     let loaded = load(&input, None, Some(ColorMode::Rgb))?;
     loaded.warn();
-    let materials = &loaded.desc.materials;
-    let known = || materials.iter().filter_map(|m| m.name.as_deref()).collect::<Vec<_>>().join(", ");
-    let id = materials.iter().position(|m| m.name.as_deref() == Some(name));
-    let id = id.with_context(|| format!("{} has no material named `{name}`; it has: {}", file.display(), known()))?;
+    Ok(loaded)
+}
+
+/// The place of a name among those of a scene.
+fn place_of(name: &str, what: &str, names: &[Option<&str>], file: &Path) -> anyhow::Result<usize> {
+    let known = || names.iter().flatten().copied().collect::<Vec<_>>().join(", ");
+    let place = names.iter().position(|known| *known == Some(name));
+    place.with_context(|| format!("{} has no {what} named `{name}`; it has: {}", file.display(), known()))
+}
+
+/// A material of a scene file by its name.
+fn of_scene(file: &Path, name: &str, options: &GonioOptions) -> anyhow::Result<(Scene, MaterialId)> {
+    let loaded = read(file, options)?;
+    let names: Vec<_> = loaded.desc.materials.iter().map(|m| m.name.as_deref()).collect();
+    let id = place_of(name, "material", &names, file)?;
     Ok((loaded.scene, MaterialId(id as u32)))
 }
 
 /// A material in pbrt's words.
-fn in_words(words: &str) -> anyhow::Result<(tyndall::scene::Scene, MaterialId)> {
+fn in_words(words: &str) -> anyhow::Result<(Scene, MaterialId)> {
     let text = format!("WorldBegin\nMaterial {}\nShape \"sphere\"\n", quoted(words));
     let (desc, sources) = tyndall_formats::pbrt::parse(Path::new("--material"), &text)?;
     let id = desc.shapes.first().context("a material is the words of one Material directive")?.material.value;
@@ -181,8 +208,8 @@ fn tell_grain(figures: &mut Vec<Figure>, m: &Measured, exact: Option<tyndall_lab
 fn verdict(a: &Agreement) -> String {
     let says = if a.p < 1e-3 { "DISAGREE" } else { "agree" };
     format!(
-        "Sampling and evaluation {says}: p = {:.2e}; the greatest |z| of {} pixels is {:.2}, χ²/n = {:.3}.",
-        a.p,
+        "Sampling and evaluation {says} ({}); the greatest |z| of {} pixels is {:.2}, χ²/n = {:.3}.",
+        chance(a.p),
         a.tests,
         a.max_z,
         a.chi_square / a.tests.max(1) as f64
@@ -190,16 +217,16 @@ fn verdict(a: &Agreement) -> String {
 }
 
 /// The mean of some pixels.
-fn mean(estimates: &[Estimate], pixels: impl Iterator<Item = usize> + Clone) -> Estimate {
-    let n = pixels.clone().count().max(1) as f64;
-    let sum = pixels.clone().map(|i| estimates[i].mean).sum::<f64>() / n;
-    let variance = pixels.map(|i| estimates[i].standard_error.powi(2)).sum::<f64>();
+fn mean(estimates: &[Estimate], pixels: &[usize]) -> Estimate {
+    let n = pixels.len().max(1) as f64;
+    let sum = pixels.iter().map(|i| estimates[*i].mean).sum::<f64>() / n;
+    let variance = pixels.iter().map(|i| estimates[*i].standard_error.powi(2)).sum::<f64>();
     Estimate { mean: sum, standard_error: variance.sqrt() / n }
 }
 
 /// All channels as one.
-fn grey(maps: &[Vec<Estimate>], pixels: impl Iterator<Item = usize> + Clone) -> Estimate {
-    let channels: Vec<_> = maps.iter().map(|channel| mean(channel, pixels.clone())).collect();
+fn grey(maps: &[Vec<Estimate>], pixels: &[usize]) -> Estimate {
+    let channels: Vec<_> = maps.iter().map(|channel| mean(channel, pixels)).collect();
     let n = channels.len().max(1) as f64;
     // The channels of a sample are not independent: at most their errors are equal.
     Estimate {
@@ -212,19 +239,19 @@ fn grey(maps: &[Vec<Estimate>], pixels: impl Iterator<Item = usize> + Clone) -> 
 fn by_angle(map: Map, m: &Measured) -> Curve {
     let row = |row: u32| {
         let start = row as usize * map.columns as usize;
-        start..start + map.columns as usize
+        (start..start + map.columns as usize).collect::<Vec<_>>()
     };
     let degrees = |row: u32| map.cosines(row).map(|cosine| cosine.clamp(-1.0, 1.0).acos().to_degrees());
     let evaluated = m.agreement.as_ref().map(|agreement| Model {
         name: "by evaluation",
-        values: (0..map.rows).map(|r| grey(&agreement.map, row(r)).mean).collect(),
+        values: (0..map.rows).map(|r| grey(&agreement.map, &row(r)).mean).collect(),
     });
     Curve {
         name: "power per solid angle".into(),
         unit: "1/sr",
         of: "angle",
         of_unit: "°",
-        bins: (0..map.rows).map(|r| bin(degrees(r), grey(&m.map, row(r)))).collect(),
+        bins: (0..map.rows).map(|r| bin(degrees(r), grey(&m.map, &row(r)))).collect(),
         models: evaluated.into_iter().collect(),
     }
 }
@@ -236,7 +263,7 @@ fn lines(map: Map, m: &Measured) -> Vec<Line> {
         let at = |row: u32, columns: [u32; 2]| {
             let pixels = columns.map(|column| row as usize * map.columns as usize + column as usize);
             let [high, low] = map.cosines(row);
-            (f64::midpoint(high, low).acos(), grey(maps, pixels.into_iter()).mean)
+            (f64::midpoint(high, low).acos(), grey(maps, &pixels).mean)
         };
         let middle = map.columns / 2;
         let right = (0..map.rows).map(|row| at(row, [middle - 1, middle]));

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, time::Duration};
 
-use clap::{Args, Subcommand};
+use clap::{ArgGroup, Args, Subcommand};
 use tyndall::phase::{Isotropic, Phase, Rayleigh};
 use tyndall_lab::slab::Layer;
 use tyndall_lab::world::Substance;
@@ -123,9 +123,10 @@ Examples:
   tyndall lab beam --material wholemilk --mesh bunny.ply --mesh-scale 100 --time 2m --picture bunny.exr
 
 The beam comes from above (−z) and falls on the middle of the body. Where light leaves through what faces the beam is
-told by the distance from its axis, per area and power of the beam, in the three colours of the material; beside it
-stands what diffusion theory says of a half-space: the classical dipole (Jensen et al. 2001), the better dipole (d'Eon
-2012), photon beam diffusion (Habel et al. 2013). Light that has never collided is left out, also of the picture.
+told by the distance from its axis, per area and power of the beam, in the three colours of the material. Light that
+has never collided is left out, also of the picture. Beside it stands what diffusion theory says of a half-space under
+a beam without width: the classical dipole (Jensen et al. 2001), the better dipole (d'Eon 2012), photon beam diffusion
+(Habel et al. 2013).
 
 The picture shows the mean radiance [1/(mm² sr), of a beam of power 1] that leaves within --acceptance of the direction
 of view: NAME.exr with its standard error, and NAME.png, logarithmic over --decades. Lengths are in mm unless they say
@@ -139,10 +140,12 @@ pub(crate) struct BeamOptions {
     #[arg(long, requires = "material", help_heading = "Material")]
     pub(crate) reduced: bool,
     /// Absorption coefficient: one number, or red, green, blue [1/mm]
-    #[arg(long, value_name = "A|R,G,B", value_parser = values::channels, help_heading = "Material")]
+    #[arg(long, value_name = "A|R,G,B", value_parser = values::channels, allow_hyphen_values = true)]
+    #[arg(help_heading = "Material")]
     pub(crate) sigma_a: Option<[f64; 3]>,
     /// Scattering coefficient: one number, or red, green, blue [1/mm]
-    #[arg(long, value_name = "S|R,G,B", value_parser = values::channels, help_heading = "Material")]
+    #[arg(long, value_name = "S|R,G,B", value_parser = values::channels, allow_hyphen_values = true)]
+    #[arg(help_heading = "Material")]
     pub(crate) sigma_s: Option<[f64; 3]>,
     /// Mean cosine of Henyey and Greenstein's phase function [default: 0]
     #[arg(long, value_name = "G|R,G,B", value_parser = values::channels, allow_hyphen_values = true)]
@@ -153,26 +156,32 @@ pub(crate) struct BeamOptions {
     pub(crate) n: Option<f64>,
 
     /// A slab of this thickness, instead of a half-space
-    #[arg(long, value_name = "THICKNESS", value_parser = values::length, group = "body", help_heading = "Experiment")]
+    #[arg(long, value_name = "THICKNESS", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(group = "body", help_heading = "Experiment")]
     pub(crate) slab: Option<f64>,
     /// A ball of this diameter
-    #[arg(long, value_name = "DIAMETER", value_parser = values::length, group = "body", help_heading = "Experiment")]
+    #[arg(long, value_name = "DIAMETER", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(group = "body", help_heading = "Experiment")]
     pub(crate) sphere: Option<f64>,
     /// A cube of this edge
-    #[arg(long, value_name = "EDGE", value_parser = values::length, group = "body", help_heading = "Experiment")]
+    #[arg(long, value_name = "EDGE", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(group = "body", help_heading = "Experiment")]
     pub(crate) cube: Option<f64>,
     /// A box of these edges
-    #[arg(long = "box", value_name = "X,Y,Z", value_parser = values::length, value_delimiter = ',', num_args = 3)]
+    #[arg(long = "box", value_name = "X,Y,Z", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(value_delimiter = ',', num_args = 3)]
     #[arg(group = "body", help_heading = "Experiment")]
     pub(crate) edges: Vec<f64>,
     /// A closed mesh: .ply, .obj or .serialized
     #[arg(long, value_name = "FILE", group = "body", help_heading = "Experiment")]
     pub(crate) mesh: Option<PathBuf>,
     /// Length of the mesh's unit
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, default_value = "1mm", help_heading = "Experiment")]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(default_value = "1mm", help_heading = "Experiment")]
     pub(crate) mesh_scale: f64,
     /// Diameter of the beam
-    #[arg(long, value_name = "DIAMETER", value_parser = values::length, default_value = "0", help_heading = "Experiment")]
+    #[arg(long, value_name = "DIAMETER", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(default_value = "0", help_heading = "Experiment")]
     pub(crate) spot: f64,
     /// N rings of a width around the beam [default: 24, each wider than the one before]
     #[arg(long, value_name = "N,WIDTH", value_parser = bins, help_heading = "Experiment")]
@@ -186,10 +195,11 @@ pub(crate) struct BeamOptions {
     #[arg(help_heading = "Picture")]
     pub(crate) pixels: u32,
     /// What the picture is wide [default: the body, or 40 mean free paths of diffusion]
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, help_heading = "Picture")]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(help_heading = "Picture")]
     pub(crate) field: Option<f64>,
     /// Half-angle of the cone of light that the camera accepts [degrees]: larger is less noisy, and blunter
-    #[arg(long, value_name = "DEGREES", default_value_t = 20.0, help_heading = "Picture")]
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, help_heading = "Picture")]
     pub(crate) acceptance: f64,
     /// How far the camera stands from the beam [degrees]
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, help_heading = "Picture")]
@@ -235,7 +245,8 @@ pub(crate) struct FurnaceOptions {
     #[arg(long, value_name = "NAME|WORDS", help_heading = "Experiment")]
     pub(crate) material: Option<String>,
     /// Radius of the ball [mm]
-    #[arg(long, value_name = "LENGTH", value_parser = values::size, default_value = "10mm", help_heading = "Experiment")]
+    #[arg(long, value_name = "LENGTH", value_parser = values::size, allow_hyphen_values = true)]
+    #[arg(default_value = "10mm", help_heading = "Experiment")]
     pub(crate) radius: f64,
     /// Take the absorption out of all media
     #[arg(long, help_heading = "Experiment")]
@@ -264,6 +275,7 @@ pub(crate) struct FurnaceOptions {
 
 /// Something lit from one direction.
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("specimen").required(true)))]
 #[command(after_help = "\
 Examples:
   tyndall lab gonio scene.pbrt --material gold --angle 60 --picture gold     a material of a scene, by its name
@@ -284,12 +296,15 @@ A BSDF or phase function is sampled (a histogram) and evaluated (an integral ove
 says whether they do. The picture: NAME.exr has the map, its standard error, and as layers evaluation and z; NAME.png
 shows both hemispheres, each from its pole to its rim. --plot draws the plane of incidence as a polar diagram.")]
 pub(crate) struct GonioOptions {
-    /// A scene (.pbrt or .xml), of which --material names a material
-    #[arg(requires = "material")]
+    /// A scene (.pbrt or .xml), of which --material or --medium names a part
+    #[arg(conflicts_with_all = ["phase", "layer", "grain"])]
     pub(crate) scene: Option<PathBuf>,
     /// A material of the scene by its name, or one in pbrt's words
-    #[arg(long, value_name = "NAME|WORDS", group = "specimen", required = true, help_heading = "Experiment")]
+    #[arg(long, value_name = "NAME|WORDS", group = "specimen", help_heading = "Experiment")]
     pub(crate) material: Option<String>,
+    /// The phase function of a medium of the scene, by its name
+    #[arg(long, value_name = "NAME", group = "specimen", requires = "scene", help_heading = "Experiment")]
+    pub(crate) medium: Option<String>,
     /// A phase function: a mean cosine g (Henyey and Greenstein), isotropic or rayleigh
     #[arg(long, value_name = "G|NAME", value_parser = phase, group = "specimen", allow_hyphen_values = true)]
     #[arg(help_heading = "Experiment")]

@@ -79,6 +79,15 @@ pub(crate) struct Bin {
     pub(crate) estimate: Estimate,
 }
 
+/// A chance in words.
+pub(super) fn chance(p: f64) -> String {
+    match p {
+        p if p >= 0.01 => format!("p = {p:.2}"),
+        p if p >= 1e-99 => format!("p = {p:.0e}"),
+        _ => "p < 1e-99".into(),
+    }
+}
+
 impl Report {
     /// The single figures, and how many others there are.
     pub(crate) fn table(&self) -> String {
@@ -177,8 +186,9 @@ impl Report {
 impl Curve {
     /// All bins, with what the theories say of them.
     fn table(&self) -> String {
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
-        let mut out = format!("\n{}{unit}, by {} [{}]\n{:>25}", self.name, self.of, self.of_unit, "");
+        let brackets = |unit: &str| if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        let (unit, of_unit) = (brackets(self.unit), brackets(self.of_unit));
+        let mut out = format!("\n{}{unit}, by {}{of_unit}\n{:>25}", self.name, self.of, "");
         let _ = write!(out, " {:>26}", "measured");
         for model in &self.models {
             let _ = write!(out, " {:>22}", model.name);
