@@ -4,9 +4,9 @@ mod camera;
 mod lights;
 pub(crate) mod made;
 mod materials;
-mod media;
-mod shapes;
-mod spectra;
+pub(crate) mod media;
+pub(crate) mod shapes;
+pub(crate) mod spectra;
 mod textures;
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use glam::{DMat4, DVec3};
 use tyndall::{
     light::{AreaLight, EmitterShape, Light, LightId},
     math::{Vec2, Vec3},
@@ -126,8 +127,12 @@ impl<'a> Builder<'a> {
                 vec![builder.add_sphere(Sphere::new(Vec3::ZERO, *radius as f32), &transform, reversed)]
             }
             ShapeKind::Disk { height, radius, inner_radius, mapping } => {
-                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32).mapped(*mapping);
-                vec![builder.add_disk(disk, &transform, reversed)]
+                // Height and radius in double precision: the disk is the same whether a number or a matrix says them.
+                let unit = DMat4::from_translation(DVec3::new(0.0, 0.0, *height))
+                    * DMat4::from_scale(DVec3::new(*radius, *radius, 1.0));
+                let disk = Disk::new(0.0, 1.0, (inner_radius / radius) as f32).mapped(*mapping);
+                let transform = self.transform(desc.to_world * unit, desc.span)?;
+                vec![gathered.builder.add_disk(disk, &transform, reversed)]
             }
             ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],
             ShapeKind::Cube => vec![builder.add_mesh(cube(), &transform, reversed)],
@@ -245,20 +250,7 @@ impl<'a> Builder<'a> {
         flip_tex_coords: bool,
     ) -> Option<Mesh> {
         match mesh {
-            Ok(mesh) => {
-                let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
-                let mut uvs = mesh.uvs.unwrap_or_default();
-                if flip_tex_coords {
-                    for uv in &mut uvs {
-                        uv.y = 1.0 - uv.y;
-                    }
-                }
-                let normals = match normals {
-                    Normals::Flat => Vec::new(),
-                    Normals::AsGiven | Normals::Smooth => mesh.normals.or(smooth).unwrap_or_default(),
-                };
-                Some(Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false })
-            }
+            Ok(mesh) => Some(finished(mesh, normals, flip_tex_coords)),
             Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
         }
     }
@@ -298,6 +290,44 @@ impl<'a> Builder<'a> {
             SceneError::at(desc.span, format!("light from {what} is not known yet")).help("use a mesh of triangles"),
         )
     }
+}
+
+/// The mesh of a file with the normals and texture coordinates that are asked for.
+fn finished(mesh: TriangleMesh, normals: Normals, flip_tex_coords: bool) -> Mesh {
+    let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
+    let mut uvs = mesh.uvs.unwrap_or_default();
+    if flip_tex_coords {
+        for uv in &mut uvs {
+            uv.y = 1.0 - uv.y;
+        }
+    }
+    let normals = match normals {
+        Normals::Flat => Vec::new(),
+        Normals::AsGiven | Normals::Smooth => mesh.normals.or(smooth).unwrap_or_default(),
+    };
+    Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false }
+}
+
+/// The triangles that a shape is made of as it stands, for whoever writes them elsewhere. `None` for what is no mesh.
+pub(crate) fn mesh_of(kind: &ShapeKind) -> Option<Result<Mesh, MeshError>> {
+    let file = |mesh: Result<TriangleMesh, MeshError>, flat, smooth, flip| {
+        mesh.map(|mesh| finished(mesh, Normals::asked(flat, smooth), flip))
+    };
+    Some(match kind {
+        ShapeKind::Rectangle => Ok(rectangle()),
+        ShapeKind::Cube => Ok(cube()),
+        ShapeKind::TriangleMesh(mesh) => Ok(inline_mesh(mesh)),
+        ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+            file(read_ply(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
+        }
+        ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
+            file(read_obj(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
+        }
+        ShapeKind::Serialized { path, index, face_normals } => {
+            file(read_serialized(&path.value, *index), *face_normals, false, false)
+        }
+        ShapeKind::Sphere { .. } | ShapeKind::Disk { .. } | ShapeKind::BilinearMesh(_) => return None,
+    })
 }
 
 /// The surface of an object, as it can be sampled.
@@ -387,12 +417,12 @@ fn patches_of(patches: &PatchDesc) -> impl Iterator<Item = Patch> {
     patches.indices.iter().map(|corners| Patch::new(corners.map(|i| Vec3::from_array(patches.positions[i as usize]))))
 }
 
-/// The square [−1, 1]² at z = 0, seen from +z.
+/// The square [−1, 1]² at z = 0, seen from +z: as a flat patch with these corners.
 fn rectangle() -> Mesh {
     let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
     Mesh {
         positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
-        indices: vec![[0, 1, 2], [2, 3, 0]],
+        indices: vec![[0, 1, 2], [0, 2, 3]],
         normals: Vec::new(),
         uvs: vec![Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 1.0)],
         reversed: false,

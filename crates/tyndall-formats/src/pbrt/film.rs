@@ -111,6 +111,11 @@ fn gbuffer(p: &mut Params) -> Vec<LayerKind> {
         }
         _ => Space::Camera,
     };
+    gbuffer_layers(space)
+}
+
+/// The layers of a `gbuffer` in a space.
+pub(crate) fn gbuffer_layers(space: Space) -> Vec<LayerKind> {
     let layer = |feature, average, channels: &[&str]| LayerKind {
         feature,
         average,

@@ -15,7 +15,7 @@
 mod camera;
 mod color_space;
 mod directives;
-mod film;
+pub(crate) mod film;
 mod lexer;
 mod lights;
 mod materials;
@@ -26,7 +26,7 @@ mod params;
 mod parser;
 mod settings;
 mod shapes;
-mod state;
+pub(crate) mod state;
 #[cfg(test)]
 mod tests;
 mod textures;

@@ -1,0 +1,98 @@
+//! Emitters.
+
+use glam::{DMat4, DVec3};
+
+use super::Pen;
+use super::element::Element;
+use super::placed;
+use crate::desc::{AreaLightDesc, EnvironmentMapping, LightDesc, LightKind, SpotFalloff};
+use crate::mitsuba::facing;
+use crate::write::place::target;
+
+impl Pen<'_, '_> {
+    pub(super) fn light(&mut self, light: &LightDesc) -> Option<Element> {
+        let mut element = match &light.kind {
+            LightKind::Point { intensity } => {
+                let mut element = Element::plugin("emitter", "point");
+                let position = light.to_world.w_axis.truncate();
+                if position != DVec3::ZERO {
+                    element.push(point("position", position));
+                }
+                element.extend(self.light_spectrum("intensity", intensity));
+                element
+            }
+            LightKind::Spot { intensity, cutoff, beam, falloff } => {
+                let mut element = Element::plugin("emitter", "spot");
+                element.extend(aimed(light.to_world));
+                element.extend(self.light_spectrum("intensity", intensity));
+                element.float_unless("cutoff_angle", *cutoff, 20.0);
+                element.float_unless("beam_width", *beam, 0.75 * cutoff);
+                if *falloff == SpotFalloff::SmoothCosine && beam != cutoff {
+                    let message =
+                        "in Mitsuba a spot fades between beam and cutoff linearly in the angle, not by a smooth step";
+                    self.draft.differs(light.span, message);
+                }
+                element
+            }
+            LightKind::Distant { irradiance } => {
+                let mut element = Element::plugin("emitter", "directional");
+                element.push(point_along(light.to_world)?);
+                element.extend(self.light_spectrum("irradiance", irradiance));
+                element
+            }
+            LightKind::Constant { radiance } => {
+                let mut element = Element::plugin("emitter", "constant");
+                element.extend(self.light_spectrum("radiance", radiance));
+                element
+            }
+            LightKind::Environment { path, scale, mapping } => {
+                if *mapping == EnvironmentMapping::EqualAreaOctahedral {
+                    self.lacks(light.span, "an environment on an equal-area square");
+                    return None;
+                }
+                let mut element = Element::plugin("emitter", "envmap");
+                element.extend(placed(light.to_world));
+                let file = self.draft.relative(&path.value, path.span);
+                element.string("filename", &file);
+                element.float_unless("scale", *scale, 1.0);
+                element
+            }
+        };
+        if let Some(medium) = light.medium {
+            element.push(self.medium_ref(medium.value));
+        }
+        Some(element)
+    }
+
+    pub(super) fn area_light(&mut self, light: &AreaLightDesc) -> Element {
+        if light.two_sided {
+            self.lacks(light.span, "a surface that shines on both sides");
+        }
+        let mut element = Element::plugin("emitter", "area");
+        element.extend(self.light_spectrum("radiance", &light.radiance));
+        element
+    }
+}
+
+pub(super) fn point(name: &str, v: DVec3) -> Element {
+    Element::new("point").with("name", name).numbers("value", &v.to_array())
+}
+
+/// `direction`, or the whole space where that would not be exact.
+fn point_along(to_world: DMat4) -> Option<Element> {
+    let axis = to_world.z_axis.truncate();
+    let found = target(DVec3::ZERO, axis).filter(|direction| {
+        let read = facing(*direction).z_axis.truncate().try_normalize();
+        read.map(DVec3::as_vec3) == axis.try_normalize().map(DVec3::as_vec3)
+    });
+    let Some(direction) = found else { return placed(to_world) };
+    Some(Element::new("vector").with("name", "direction").numbers("value", &direction.to_array()))
+}
+
+/// From where to where a spot shines, or its whole space where that would not be exact.
+fn aimed(to_world: DMat4) -> Option<Element> {
+    let from = to_world.w_axis.truncate();
+    let Some(to) = target(from, to_world.z_axis.truncate()) else { return placed(to_world) };
+    let look = Element::new("lookat").numbers("origin", &from.to_array()).numbers("target", &to.to_array());
+    Some(Element::new("transform").with("name", "to_world").around(look))
+}

@@ -1,0 +1,152 @@
+//! Shapes, objects and their instances.
+
+use glam::DMat4;
+use tyndall::shape::DiskMapping;
+
+use super::Pen;
+use super::entity::{Entity, quoted};
+use crate::build::shapes::mesh_of;
+use crate::desc::{MaterialKind, PatchDesc, ShapeDesc, ShapeKind};
+use crate::write::names::{Names, printable};
+
+impl Pen<'_, '_> {
+    pub(super) fn shapes(&mut self) {
+        let desc = self.draft.desc;
+        let mut names = Names::default();
+        let groups: Vec<_> =
+            desc.groups.iter().map(|group| quoted(&names.unique(Some(&group.name), "object"))).collect();
+        for (group, name) in desc.groups.iter().zip(&groups) {
+            self.sheet.line(&format!("ObjectBegin {name}"));
+            self.sheet.indent();
+            group.shapes.iter().for_each(|shape| self.shape(shape));
+            self.sheet.outdent();
+            self.sheet.line("ObjectEnd");
+            self.sheet.gap();
+        }
+        for shape in &desc.shapes {
+            self.shape(shape);
+        }
+        for instance in &desc.instances {
+            let Some(name) = groups.get(instance.group.value.0 as usize) else { continue };
+            let is_moved = instance.to_world != DMat4::IDENTITY;
+            if is_moved {
+                self.open();
+                self.place(instance.to_world);
+            }
+            self.sheet.line(&format!("ObjectInstance {name}"));
+            if is_moved {
+                self.close();
+            }
+        }
+    }
+
+    fn shape(&mut self, shape: &ShapeDesc) {
+        let desc = self.draft.desc;
+        let (mut material, mut opacity) = (shape.material.value, shape.opacity.as_ref());
+        if let Some(MaterialKind::Mask { of, opacity: mask }) = desc.material(material).map(|m| &m.kind) {
+            if opacity.is_some() || shape.interface.is_some() {
+                self.lacks(shape.material.span, "a mask on a boundary of media");
+            }
+            (material, opacity) = (of.value, Some(mask));
+        }
+        let Some(mut entity) = self.shape_kind(shape) else { return };
+        if let Some(opacity) = opacity {
+            self.number(&mut entity, "alpha", opacity, 1.0);
+        }
+        if let Some(priority) = shape.priority {
+            entity.integer("priority", priority.value.into());
+        }
+        let name = quoted(self.material_name(material));
+        if let Some(name) = &shape.name {
+            self.sheet.line(&format!("# {}", printable(name)));
+        }
+        self.open();
+        if let Some(interface) = shape.interface {
+            self.interface(interface.inside, interface.outside);
+        }
+        self.place(shape.to_world);
+        if self.is_reversed(shape) {
+            self.sheet.line("ReverseOrientation");
+        }
+        self.sheet.line(&format!("NamedMaterial {name}"));
+        if let Some(light) = &shape.emission {
+            self.area_light(light);
+        }
+        self.entity(entity);
+        self.close();
+    }
+
+    /// pbrt turns the normals of its quadrics round under a mirroring matrix.
+    fn is_reversed(&self, shape: &ShapeDesc) -> bool {
+        let quadric = matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. });
+        shape.reverse_orientation ^ (quadric && shape.to_world.determinant() < 0.0)
+    }
+
+    fn shape_kind(&mut self, shape: &ShapeDesc) -> Option<Entity> {
+        Some(match &shape.kind {
+            ShapeKind::Sphere { radius } => {
+                let mut entity = Entity::new("Shape", &["sphere"]);
+                entity.float_unless("radius", *radius, 1.0);
+                entity
+            }
+            ShapeKind::Disk { height, radius, inner_radius, mapping } => {
+                if *mapping == DiskMapping::OutwardAzimuth {
+                    let message = "texture coordinates of disks run otherwise in pbrt";
+                    self.draft.differs(shape.span, message);
+                }
+                let mut entity = Entity::new("Shape", &["disk"]);
+                entity.float_unless("height", *height, 0.0);
+                entity.float_unless("radius", *radius, 1.0);
+                entity.float_unless("innerradius", *inner_radius, 0.0);
+                entity
+            }
+            ShapeKind::Rectangle => {
+                let mut entity = Entity::new("Shape", &["bilinearmesh"]);
+                entity.param("point3", "P", "[ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]");
+                entity
+            }
+            ShapeKind::Cube | ShapeKind::TriangleMesh(_) => self.triangles(shape)?,
+            ShapeKind::BilinearMesh(patches) => bilinear(patches),
+            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+                let as_it_is = !*flip_tex_coords
+                    && self.draft.has_normals(path).is_none_or(
+                        |has| {
+                            if has { !*face_normals } else { !*smooth_normals }
+                        },
+                    );
+                let name =
+                    if as_it_is { self.draft.relative(&path.value, path.span) } else { self.draft.mesh(shape)? };
+                let mut entity = Entity::new("Shape", &["plymesh"]);
+                entity.string("filename", &name);
+                entity
+            }
+            ShapeKind::Obj { .. } | ShapeKind::Serialized { .. } => {
+                let name = self.draft.mesh(shape)?;
+                let mut entity = Entity::new("Shape", &["plymesh"]);
+                entity.string("filename", &name);
+                entity
+            }
+        })
+    }
+
+    /// Triangles in words.
+    fn triangles(&mut self, shape: &ShapeDesc) -> Option<Entity> {
+        let mesh = mesh_of(&shape.kind)?.ok()?;
+        let flat = |points: &[tyndall::math::Vec3]| points.iter().flat_map(|p| p.to_array()).collect::<Vec<_>>();
+        let mut entity = Entity::new("Shape", &["trianglemesh"]);
+        entity.singles("point3", "P", &flat(&mesh.positions));
+        entity.indices("indices", mesh.indices.as_flattened());
+        entity.singles("normal", "N", &flat(&mesh.normals));
+        entity.singles("point2", "uv", &mesh.uvs.iter().flat_map(|uv| uv.to_array()).collect::<Vec<_>>());
+        Some(entity)
+    }
+}
+
+fn bilinear(patches: &PatchDesc) -> Entity {
+    let mut entity = Entity::new("Shape", &["bilinearmesh"]);
+    entity.singles("point3", "P", patches.positions.as_flattened());
+    entity.indices("indices", patches.indices.as_flattened());
+    entity.singles("normal", "N", patches.normals.as_flattened());
+    entity.singles("point2", "uv", patches.uvs.as_flattened());
+    entity
+}
