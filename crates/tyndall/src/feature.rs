@@ -102,11 +102,13 @@ impl<'a> FirstHit<'a> {
 
     /// One direction of the BSDF: its weight has the albedo as its mean.
     fn albedo(&self, hit: &Interaction, wavelengths: &Wavelengths, sampler: &mut Sampler) -> [f32; 3] {
-        let bsdf = match self.scene.material(hit) {
+        let (material, relief) = self.scene.meet(hit, self.ray.ray.dir, || sampler.next_1d());
+        let bsdf = match material {
             crate::material::Material::Null => return [0.0; 3],
-            material => material.bsdf(&hit.into(), wavelengths, 0),
+            material => material.bsdf(&hit.into(), wavelengths, 0).seeded(|| sampler.rng.next_u32()),
         };
-        let Vertex::Surface { bsdf, wo, .. } = Vertex::surface(*hit, bsdf, self.ray.ray.dir) else { return [0.0; 3] };
+        let vertex = Vertex::met(self.scene, *hit, bsdf, self.ray.ray.dir, relief);
+        let Vertex::Surface { bsdf, wo, .. } = vertex else { return [0.0; 3] };
         let u = sampler.next_2d();
         match bsdf.sample(wo, sampler.next_1d(), Vec2::new(u.x, u.y)) {
             Some(sample) => film_rgb(sample.weight * Spectrum::illuminant_rgb([1.0; 3]).eval(wavelengths), wavelengths),

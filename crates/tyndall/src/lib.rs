@@ -19,6 +19,7 @@ pub mod math;
 pub mod medium;
 pub mod path;
 pub mod phase;
+pub mod relief;
 pub mod render;
 pub mod sampling;
 pub mod scene;

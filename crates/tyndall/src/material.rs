@@ -1,10 +1,15 @@
 //! What a surface is made of, as the scene has it: spectra that become a [`Bsdf`] at the wavelengths of a path.
 
+mod coated;
+
+pub use coated::{CoatedBase, CoatedMaterial};
+
 use crate::{
     bsdf::{
-        Bsdf, Plastic, Sides,
+        Bsdf, Plastic, Sides, index_of_reflectance,
         microfacet::{Distribution, Shadowing},
     },
+    relief::Relief,
     scene::MaterialId,
     spectrum::{Lanes, Sampled, Wavelengths, glass::Glass},
     texture::{Texture, TexturePoint},
@@ -75,6 +80,8 @@ pub enum Material {
         /// The sides that reflect.
         sides: Sides,
     },
+    /// A base under a coat, rough or smooth, clear or cloudy.
+    Coated(Box<CoatedMaterial>),
     /// No material: light passes, and may enter another medium.
     Null,
     /// No surface either: light passes and stays in its medium, and nothing shines (pbrt's `alpha`).
@@ -92,6 +99,13 @@ pub enum Material {
         outside: MaterialId,
         /// On the other side.
         inside: MaterialId,
+    },
+    /// Another material, shaded as if the surface were uneven.
+    Embossed {
+        /// It; neither this one nor one that is embossed is part of it.
+        of: MaterialId,
+        /// How uneven.
+        relief: Box<Relief>,
     },
 }
 
@@ -164,6 +178,19 @@ pub enum Index {
     Table(Sampled),
 }
 
+impl Metal {
+    /// Its complex index, real and imaginary part [1].
+    #[inline]
+    fn index(&self, at: &TexturePoint, wavelengths: &Wavelengths) -> [Lanes; 2] {
+        match self {
+            Self::Index { eta, k } => [eta.eval(at, wavelengths), k.eval(at, wavelengths)],
+            Self::Reflectance(r) => index_of_reflectance(r.eval(at, wavelengths)),
+            // |1 − ik| = |1 + ik|: a purely imaginary index reflects all.
+            Self::Mirror => [Lanes::ZERO, Lanes::ONE],
+        }
+    }
+}
+
 impl Material {
     /// The BSDF in the lanes of a path, whose lane `hero` decides where wavelengths part.
     #[inline]
@@ -172,14 +199,8 @@ impl Material {
             Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(at, wavelengths)).on(*sides),
             Self::Conductor { metal, alpha, tint, sides } => {
                 let [x, y] = alpha.at(at);
-                let bsdf = match metal {
-                    Metal::Index { eta, k } => {
-                        Bsdf::conductor(eta.eval(at, wavelengths), k.eval(at, wavelengths), x, y)
-                    }
-                    Metal::Reflectance(r) => Bsdf::conductor_of_reflectance(r.eval(at, wavelengths), x, y),
-                    // |1 − ik| = |1 + ik|: a purely imaginary index reflects all.
-                    Metal::Mirror => Bsdf::conductor(Lanes::ZERO, Lanes::ONE, x, y),
-                };
+                let [eta, k] = metal.index(at, wavelengths);
+                let bsdf = Bsdf::conductor(eta, k, x, y);
                 alpha.shape(bsdf).tinted(tint.eval(at, wavelengths), Lanes::ONE).on(*sides)
             }
             Self::Dielectric { eta, .. } => self.bsdf_between(eta.at(wavelengths, hero), at, wavelengths),
@@ -196,8 +217,9 @@ impl Material {
                     .tinted(tint.eval(at, wavelengths), Lanes::ONE)
                     .on(*sides)
             }
+            Self::Coated(coated) => coated.bsdf(at, wavelengths, hero),
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
-            Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } => Bsdf::Null,
+            Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } | Self::Embossed { .. } => Bsdf::Null,
         }
     }
 
@@ -225,7 +247,11 @@ impl Material {
     /// Whether wavelengths part here, so that a path can go on with one only.
     #[inline]
     pub fn disperses(&self) -> bool {
-        matches!(self, Self::Dielectric { eta, .. } if eta.disperses())
+        match self {
+            Self::Dielectric { eta, .. } => eta.disperses(),
+            Self::Coated(coated) => coated.eta.disperses(),
+            _ => false,
+        }
     }
 }
 

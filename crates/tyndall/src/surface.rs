@@ -7,35 +7,43 @@
 use crate::{
     material::Material,
     math::Vec3,
+    relief::Relief,
     scene::{MaterialId, Scene},
     shape::Interaction,
 };
 
 impl Scene {
-    /// The material that a path along `dir` meets at `hit`. `random` gives numbers in [0, 1), one for each mixture on the
-    /// way.
+    /// The material that a path along `dir` meets at `hit`, and the one that is its relief if it has any. `random` gives
+    /// numbers in [0, 1), one for each mixture on the way.
     #[inline]
-    pub fn meet(&self, hit: &Interaction, dir: Vec3, random: impl FnMut() -> f32) -> &Material {
+    pub fn meet(&self, hit: &Interaction, dir: Vec3, random: impl FnMut() -> f32) -> (&Material, Option<MaterialId>) {
         match self.material(hit) {
-            compound @ (Material::Mix { .. } | Material::TwoFaced { .. }) => self.pick(compound, hit, dir, random),
-            plain => plain,
+            Material::Mix { .. } | Material::TwoFaced { .. } | Material::Embossed { .. } => self.pick(hit, dir, random),
+            plain => (plain, None),
         }
     }
 
-    fn pick<'a>(
-        &'a self,
-        mut material: &'a Material,
-        hit: &Interaction,
-        dir: Vec3,
-        mut random: impl FnMut() -> f32,
-    ) -> &'a Material {
+    fn pick(&self, hit: &Interaction, dir: Vec3, mut random: impl FnMut() -> f32) -> (&Material, Option<MaterialId>) {
+        let mut id = self.object(hit).material;
+        let mut relief = None;
         loop {
-            let id = match material {
+            id = match &self.materials[id.0 as usize] {
                 Material::Mix { of, amount } => of[usize::from(random() < amount.scalar(&hit.into()))],
                 Material::TwoFaced { outside, inside } => face(hit, dir, *outside, *inside),
-                plain => return plain,
+                Material::Embossed { of, .. } => {
+                    relief = Some(id);
+                    *of
+                }
+                plain => return (plain, relief),
             };
-            material = &self.materials[id.0 as usize];
+        }
+    }
+
+    /// The relief that an embossed material has.
+    pub(crate) fn relief(&self, id: MaterialId) -> Option<&Relief> {
+        match &self.materials[id.0 as usize] {
+            Material::Embossed { relief, .. } => Some(relief),
+            _ => None,
         }
     }
 
@@ -55,6 +63,7 @@ impl Scene {
                 Openness { part: (1.0 - w) * a.part + w * b.part, crosses: a.crosses || b.crosses }
             }
             Material::TwoFaced { outside, inside } => of(face(hit, dir, *outside, *inside)),
+            Material::Embossed { of: even, .. } => of(*even),
             _ => Openness { part: 0.0, crosses: false },
         }
     }
@@ -82,6 +91,7 @@ pub(crate) fn may_be_open(material: &Material, materials: &[Material]) -> bool {
         Material::Null | Material::Hole => true,
         Material::Mix { of: [first, second], .. } => of(first) || of(second),
         Material::TwoFaced { outside, inside } => of(outside) || of(inside),
+        Material::Embossed { of: even, .. } => of(even),
         _ => false,
     }
 }

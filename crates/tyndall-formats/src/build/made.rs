@@ -50,13 +50,14 @@ impl Made {
 pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
     match kind {
         MaterialKind::Mix { of, .. } | MaterialKind::TwoFaced { of } => of,
-        MaterialKind::Mask { of, .. } => std::slice::from_ref(of),
+        MaterialKind::Mask { of, .. } | MaterialKind::Embossed { of, .. } => std::slice::from_ref(of),
         MaterialKind::Diffuse { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::Dielectric { .. }
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::DiffuseTransmission { .. }
         | MaterialKind::Plastic { .. }
+        | MaterialKind::Coated(_)
         | MaterialKind::Interface => &[],
     }
 }

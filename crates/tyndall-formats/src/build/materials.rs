@@ -5,7 +5,8 @@ use tyndall::{
         Sides, internal_reflectance,
         microfacet::{Distribution, Shadowing},
     },
-    material::{Index, Material, Metal, Roughness},
+    material::{CoatedBase, CoatedMaterial, Index, Material, Metal, Roughness},
+    relief::{Map, Relief},
     spectrum::{Spectrum, glass::Glass},
     texture::Texture,
 };
@@ -13,11 +14,11 @@ use tyndall::{
 use super::{Builder, made::parts, material_id, spectra::Measure};
 use crate::{
     desc::{
-        ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
-        SpectrumDesc, Varying,
+        BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, ReliefMap,
+        RoughnessDesc, ShadowingKind, SpectrumDesc, Varying,
     },
     error::SceneError,
-    source::Spanned,
+    source::{Span, Spanned},
 };
 
 /// The most materials that one can be made of, counted as often as they are part of it.
@@ -94,6 +95,7 @@ impl Builder<'_> {
                     sides,
                 })
             }
+            MaterialKind::Coated(coated) => self.coated(coated).map(|coated| Material::Coated(Box::new(coated))),
             MaterialKind::Interface => Some(Material::Null),
             MaterialKind::Mix { of, amount } => Some(Material::Mix {
                 of: [material_id(of[0].value), material_id(of[1].value)],
@@ -106,7 +108,48 @@ impl Builder<'_> {
             MaterialKind::TwoFaced { of: [outside, inside] } => {
                 Some(Material::TwoFaced { outside: material_id(outside.value), inside: material_id(inside.value) })
             }
+            MaterialKind::Embossed { of, map, rule } => {
+                if let Some(other) = self.embossed_part(of) {
+                    let error = SceneError::not_yet(desc.span, "a relief upon a relief is not known yet");
+                    return self.fail(error.help("leave one of them out").related(other, "the other one"));
+                }
+                let map = match map {
+                    ReliefMap::Heights { texture, scale } => {
+                        Map::Heights { texture: self.texture(texture, Measure::Number)?, scale: *scale as f32 }
+                    }
+                    ReliefMap::Normals(texture) => Map::Normals(self.texture(texture, Measure::Share)?),
+                };
+                Some(Material::Embossed { of: material_id(of.value), relief: Box::new(Relief { map, rule: *rule }) })
+            }
         }
+    }
+
+    /// Where a material, or a part of it, is embossed.
+    fn embossed_part(&self, of: &Spanned<MaterialId>) -> Option<Span> {
+        let desc = self.desc.material(of.value)?;
+        match &desc.kind {
+            MaterialKind::Embossed { .. } => Some(desc.span),
+            kind => parts(kind).iter().find_map(|part| self.embossed_part(part)),
+        }
+    }
+
+    fn coated(&mut self, desc: &CoatedDesc) -> Option<CoatedMaterial> {
+        let base = match &desc.base {
+            BaseDesc::Diffuse(reflectance) => CoatedBase::Diffuse(self.texture(reflectance, Measure::Share)?),
+            BaseDesc::Conductor { optics, roughness } => {
+                CoatedBase::Metal { metal: self.metal(optics)?, alpha: self.roughness(roughness)? }
+            }
+        };
+        Some(CoatedMaterial {
+            eta: self.index(&desc.eta)?,
+            alpha: self.roughness(&desc.roughness)?,
+            thickness: self.texture(&desc.thickness, Measure::Coefficient)?,
+            albedo: self.texture(&desc.albedo, Measure::Share)?,
+            g: self.texture(&desc.g, Measure::Number)?,
+            base,
+            max_depth: desc.max_depth,
+            walks: desc.walks,
+        })
     }
 
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {

@@ -4,18 +4,23 @@ use std::collections::HashMap;
 
 use glam::{DMat4, DVec3};
 use tyndall::{
-    light::{AreaLight, EmitterShape, Light, LightId},
-    math::{Vec2, Vec3},
+    light::{AreaLight, EmitterShape, Light, LightId, Revolved},
+    math::{Transform, Vec2, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
-    shape::{Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere},
+    shape::{
+        Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere, Turn,
+    },
+    texture::TexturePoint,
 };
 
-use super::{Builder, material_id, medium_id};
+use super::{Builder, material_id, medium_id, painted::Painting, spectra::Measure};
 use crate::{
-    desc::{AreaLightDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
+    desc::{
+        AreaLightDesc, DisplacementDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind,
+    },
     error::SceneError,
-    mesh::{MeshError, TriangleMesh, read_obj, read_ply, read_serialized},
+    mesh::{MeshError, TriangleMesh, displace, read_obj, read_ply, read_serialized, subdivide},
 };
 
 /// All shapes of a scene.
@@ -34,6 +39,7 @@ struct Gathered<'a> {
     objects: Vec<Object>,
     /// Objects that shine, with what, and how much of them is there.
     emitters: Vec<(ObjectId, &'a AreaLightDesc, f32)>,
+    painting: Painting,
 }
 
 /// The normals of a mesh from a file.
@@ -82,6 +88,7 @@ impl<'a> Builder<'a> {
             Ok(geometry) => geometry,
             Err(e) => return self.fail(SceneError::new(e.to_string())),
         };
+        self.paint(&geometry, gathered.painting);
         let mut lights = Vec::new();
         for (object, emission, opacity) in gathered.emitters {
             let emission = self.emitters(&geometry, object, emission, opacity, &mut lights)?;
@@ -123,16 +130,21 @@ impl<'a> Builder<'a> {
         let reversed = desc.reverse_orientation;
         let builder = &mut gathered.builder;
         let added = match &desc.kind {
-            ShapeKind::Sphere { radius } => {
-                vec![builder.add_sphere(Sphere::new(Vec3::ZERO, *radius as f32), &transform, reversed)]
+            ShapeKind::Sphere { radius, part } => {
+                let sphere = Sphere::new(Vec3::ZERO, *radius as f32).cut(*part);
+                vec![builder.add_sphere(sphere, &transform, reversed)]
             }
-            ShapeKind::Disk { height, radius, inner_radius, mapping } => {
+            ShapeKind::Disk { height, radius, inner_radius, turn, mapping } => {
                 // Height and radius in double precision: the disk is the same whether a number or a matrix says them.
                 let unit = DMat4::from_translation(DVec3::new(0.0, 0.0, *height))
                     * DMat4::from_scale(DVec3::new(*radius, *radius, 1.0));
-                let disk = Disk::new(0.0, 1.0, (inner_radius / radius) as f32).mapped(*mapping);
+                let disk = Disk::new(0.0, 1.0, (inner_radius / radius) as f32).cut(*turn).mapped(*mapping);
                 let transform = self.transform(desc.to_world * unit, desc.span)?;
                 vec![gathered.builder.add_disk(disk, &transform, reversed)]
+            }
+            ShapeKind::Cylinder { radius, heights, turn } => {
+                let cylinder = Cylinder::new(*radius as f32, heights.map(|z| z as f32), *turn);
+                vec![builder.add_cylinder(cylinder, &transform, reversed)]
             }
             ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],
             ShapeKind::Cube => vec![builder.add_mesh(cube(), &transform, reversed)],
@@ -140,19 +152,36 @@ impl<'a> Builder<'a> {
             ShapeKind::BilinearMesh(patches) => {
                 patches_of(patches).map(|patch| builder.add_patch(patch, &transform, reversed)).collect()
             }
-            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_ply(&path.value), path, normals, *flip_tex_coords)?;
+                let mut mesh = match displacement {
+                    None => self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)),
+                    Some(displacement) => self.displaced(path, displacement, &transform)?,
+                };
+                if let Ok(mesh) = &mut mesh {
+                    self.keep_colours(mesh, gathered.objects.len() as u32, &mut gathered.painting);
+                }
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
+            }
+            ShapeKind::Subdivision { positions, indices, levels } => {
+                let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();
+                match subdivide(&positions, indices, *levels) {
+                    // Its normals are against the winding.
+                    Ok(mesh) => vec![builder.add_mesh(mesh_of(mesh), &transform, !reversed)],
+                    Err(problem) => return self.fail(SceneError::at(desc.span, format!("this surface: {problem}"))),
+                }
             }
             ShapeKind::Serialized { path, index, face_normals } => {
                 let normals = Normals::asked(*face_normals, true);
-                let mesh = self.mesh_file(read_serialized(&path.value, *index), path, normals, false)?;
+                let mesh = self.meshes.get((path.value.clone(), *index), || read_serialized(&path.value, *index));
+                let mesh = self.mesh_file(mesh, path, normals, false)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
             ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_obj(&path.value), path, normals, *flip_tex_coords)?;
+                let mesh = self.meshes.get((path.value.clone(), 0), || read_obj(&path.value));
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
@@ -168,7 +197,11 @@ impl<'a> Builder<'a> {
     /// A body with a priority must be something that light can enter, that does not shine, and whose outside is left to others.
     fn check_priority(&mut self, desc: &ShapeDesc) -> Option<()> {
         let Some(priority) = desc.priority else { return Some(()) };
-        let kind = self.desc.material(desc.material.value).map(|material| &material.kind);
+        let kind = |id| self.desc.material(id).map(|material| &material.kind);
+        let kind = match kind(desc.material.value) {
+            Some(MaterialKind::Embossed { of, .. }) => kind(of.value),
+            even => even,
+        };
         if !matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::Interface) | None) {
             return self.fail(
                 SceneError::at(priority.span, "only a body that light can enter has a priority")
@@ -255,6 +288,27 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// A file's mesh with its vertices moved; `None` if the texture of the heights is wrong.
+    fn displaced(
+        &mut self,
+        path: &FileRef,
+        displacement: &DisplacementDesc,
+        transform: &Transform,
+    ) -> Option<Result<TriangleMesh, MeshError>> {
+        let texture = self.texture(&displacement.height, Measure::Number)?;
+        // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
+        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO, part: None });
+        let length = |a: Vec3, b: Vec3| {
+            let along = transform.matrix.as_dmat4().transform_vector3(b.as_dvec3() - a.as_dvec3());
+            along.length()
+        };
+        let displace = |mesh| {
+            displace(mesh, length, displacement.edge_length, height)
+                .map_err(|problem| MeshError { path: path.value.clone(), problem })
+        };
+        Some(self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)).and_then(displace))
+    }
+
     /// The lights of a shining object, added to `lights`.
     fn emitters(
         &mut self,
@@ -293,9 +347,9 @@ impl<'a> Builder<'a> {
 }
 
 /// The mesh of a file with the normals and texture coordinates that are asked for.
-fn finished(mesh: TriangleMesh, normals: Normals, flip_tex_coords: bool) -> Mesh {
+fn finished(mut mesh: TriangleMesh, normals: Normals, flip_tex_coords: bool) -> Mesh {
     let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
-    let mut uvs = mesh.uvs.unwrap_or_default();
+    let mut uvs = mesh.uvs.take().unwrap_or_default();
     if flip_tex_coords {
         for uv in &mut uvs {
             uv.y = 1.0 - uv.y;
@@ -303,13 +357,14 @@ fn finished(mesh: TriangleMesh, normals: Normals, flip_tex_coords: bool) -> Mesh
     }
     let normals = match normals {
         Normals::Flat => Vec::new(),
-        Normals::AsGiven | Normals::Smooth => mesh.normals.or(smooth).unwrap_or_default(),
+        Normals::AsGiven | Normals::Smooth => mesh.normals.take().or(smooth).unwrap_or_default(),
     };
-    Mesh { positions: mesh.positions, indices: mesh.indices, normals, uvs, reversed: false }
+    mesh_of(TriangleMesh { normals: Some(normals), uvs: Some(uvs), ..mesh })
 }
 
-/// The triangles that a shape is made of as it stands, for whoever writes them elsewhere. `None` for what is no mesh.
-pub(crate) fn mesh_of(kind: &ShapeKind) -> Option<Result<Mesh, MeshError>> {
+/// The triangles that a shape is made of as it stands, for whoever writes them elsewhere. `None` for what is no mesh, and for
+/// one whose vertices a texture moves.
+pub(crate) fn triangles_of(kind: &ShapeKind) -> Option<Result<Mesh, MeshError>> {
     let file = |mesh: Result<TriangleMesh, MeshError>, flat, smooth, flip| {
         mesh.map(|mesh| finished(mesh, Normals::asked(flat, smooth), flip))
     };
@@ -317,16 +372,25 @@ pub(crate) fn mesh_of(kind: &ShapeKind) -> Option<Result<Mesh, MeshError>> {
         ShapeKind::Rectangle => Ok(rectangle()),
         ShapeKind::Cube => Ok(cube()),
         ShapeKind::TriangleMesh(mesh) => Ok(inline_mesh(mesh)),
-        ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+        ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement: None } => {
             file(read_ply(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
         }
         ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
             file(read_obj(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
         }
         ShapeKind::Serialized { path, index, face_normals } => {
-            file(read_serialized(&path.value, *index), *face_normals, false, false)
+            file(read_serialized(&path.value, *index), *face_normals, true, false)
         }
-        ShapeKind::Sphere { .. } | ShapeKind::Disk { .. } | ShapeKind::BilinearMesh(_) => return None,
+        ShapeKind::Subdivision { positions, indices, levels } => {
+            let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();
+            let named = |problem| MeshError { path: "this surface".into(), problem };
+            subdivide(&positions, indices, *levels).map(mesh_of).map_err(named)
+        }
+        ShapeKind::Sphere { .. }
+        | ShapeKind::Disk { .. }
+        | ShapeKind::Cylinder { .. }
+        | ShapeKind::BilinearMesh(_)
+        | ShapeKind::Ply { displacement: Some(_), .. } => return None,
     })
 }
 
@@ -350,14 +414,17 @@ impl Pieces {
 /// The surface of an object; or what it is, if it cannot be sampled.
 fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str> {
     Ok(Pieces::Whole(match geometry.shape(object) {
-        Shape::Sphere(sphere) => {
-            let (centre, radius) = sphere.round().ok_or("an ellipsoid")?;
-            EmitterShape::Sphere { centre, radius, inward: sphere.reversed }
-        }
-        Shape::Disk(disk) => {
-            let radius = disk.radius().ok_or("an elliptic disk")?;
-            EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
-        }
+        Shape::Sphere(sphere) => match sphere.round() {
+            Some((centre, radius)) => EmitterShape::Sphere { centre, radius, inward: sphere.reversed },
+            None => EmitterShape::Revolved(Revolved::sphere(sphere)),
+        },
+        Shape::Disk(disk) => match disk.radius().filter(|_| disk.turn == Turn::FULL) {
+            Some(radius) => {
+                EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
+            }
+            None => EmitterShape::Revolved(Revolved::disk(disk)),
+        },
+        Shape::Cylinder(cylinder) => EmitterShape::Revolved(Revolved::cylinder(cylinder)),
         Shape::Patch(_) => return Err("a curved bilinear patch"),
         Shape::Mesh(mesh) => {
             let Some(parallelogram) = as_parallelogram(mesh) else {
@@ -401,6 +468,12 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
         e2,
         ng: if mesh.reversed { -ng } else { ng },
     })
+}
+
+fn mesh_of(mesh: TriangleMesh) -> Mesh {
+    let TriangleMesh { positions, indices, normals, uvs, .. } = mesh;
+    let (normals, uvs) = (normals.unwrap_or_default(), uvs.unwrap_or_default());
+    Mesh { positions, indices, normals, uvs, reversed: false }
 }
 
 fn inline_mesh(mesh: &MeshDesc) -> Mesh {

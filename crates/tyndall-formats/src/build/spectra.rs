@@ -22,6 +22,8 @@ pub(super) enum Measure {
     Share,
     /// A coefficient, at least 0.
     Coefficient,
+    /// Any number: a height, a mean cosine.
+    Number,
     /// An index of refraction, at least 0. It filters no light: in `rgb` mode its measured values are seen under equal
     /// energy, as Mitsuba sees those of its metals.
     Index,
@@ -126,13 +128,19 @@ impl Builder<'_> {
     }
 
     fn check(&mut self, values: &[f64], measure: Measure, span: Span) -> Option<()> {
-        let most = if measure == Measure::Share { 1.0 } else { f64::from(f32::MAX) };
-        match values.iter().find(|v| !(0.0..=most).contains(*v)) {
+        let any = f64::from(f32::MAX);
+        let range = match measure {
+            Measure::Share => 0.0..=1.0,
+            Measure::Coefficient | Measure::Index => 0.0..=any,
+            Measure::Number => -any..=any,
+        };
+        match values.iter().find(|v| !range.contains(v)) {
             None => Some(()),
             Some(v) if measure == Measure::Share => self.fail(
                 SceneError::at(span, format!("{v} is not between 0 and 1"))
                     .help("a surface cannot reflect more light than it gets"),
             ),
+            Some(v) if measure == Measure::Number => self.fail(SceneError::at(span, format!("{v} is not finite"))),
             Some(v) => self.fail(SceneError::at(span, format!("{v} is negative or not finite"))),
         }
     }

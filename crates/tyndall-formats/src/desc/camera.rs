@@ -1,7 +1,10 @@
 //! The camera and its film.
 
 use glam::DMat4;
-use tyndall::film::LayerKind;
+use tyndall::{
+    film::{LayerKind, Recorded},
+    spectrum::ColorMode,
+};
 
 use super::{FileRef, MediumId, Span, Spanned};
 
@@ -222,6 +225,14 @@ pub struct FilmDesc {
     pub layers: Vec<LayerKind>,
     /// Factor on every value (pbrt: `iso` / 100 × time that the shutter is open), 1 by default.
     pub exposure: f64,
+}
+
+impl FilmDesc {
+    /// How colour must be carried for what the film records: by wavelengths, if it records bands of them.
+    pub fn color(&self) -> ColorMode {
+        let is_light = |layer: &LayerKind| matches!(layer.recorded, Recorded::Light(_));
+        if self.layers.iter().any(is_light) { ColorMode::Spectral } else { ColorMode::Rgb }
+    }
 }
 
 /// A rectangle of pixels, from the upper left: `x0 ≤ x < x1`, `y0 ≤ y < y1`, not empty and within the film.

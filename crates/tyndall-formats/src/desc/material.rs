@@ -1,5 +1,7 @@
 //! What surfaces are made of.
 
+use tyndall::relief::Rule;
+
 use super::{MaterialId, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
@@ -73,6 +75,8 @@ pub enum MaterialKind {
         /// Factor on what the coat reflects, if not 1.
         tint: Option<Spanned<Varying>>,
     },
+    /// A base under a coat of a dielectric (pbrt).
+    Coated(Box<CoatedDesc>),
     /// No surface at all: a boundary of media that light passes unchanged.
     Interface,
     /// Two materials mixed.
@@ -93,6 +97,64 @@ pub enum MaterialKind {
     TwoFaced {
         /// On the side of the normal, and on the other one.
         of: [Spanned<MaterialId>; 2],
+    },
+    /// A material shaded as if its surface were uneven.
+    Embossed {
+        /// It; neither this one nor one that is embossed is part of it.
+        of: Spanned<MaterialId>,
+        /// How uneven.
+        map: ReliefMap,
+        /// What is done where that would turn light round.
+        rule: Rule,
+    },
+}
+
+/// How uneven a surface is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReliefMap {
+    /// By heights along the normal, in scene units.
+    Heights {
+        /// They.
+        texture: Spanned<Varying>,
+        /// A factor on them.
+        scale: f64,
+    },
+    /// By normals `n` in the shading frame, as the colours `(n + 1)/2`.
+    Normals(Spanned<Varying>),
+}
+
+/// A base under a coat.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoatedDesc {
+    /// Refractive index of the coat relative to the outside.
+    pub eta: Spanned<SpectrumDesc>,
+    /// Roughness of its surface.
+    pub roughness: RoughnessDesc,
+    /// Its thickness in mean free paths, at least 0.
+    pub thickness: Spanned<Varying>,
+    /// The share of what it extinguishes that it scatters, in [0, 1].
+    pub albedo: Spanned<Varying>,
+    /// The mean cosine of that scattering, held in [−1, 1].
+    pub g: Spanned<Varying>,
+    /// What is under it.
+    pub base: BaseDesc,
+    /// Scatterings between the way in and the way out after which light is lost.
+    pub max_depth: u16,
+    /// Random walks of one evaluation, at least 1.
+    pub walks: u16,
+}
+
+/// What is under a coat.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BaseDesc {
+    /// Lambert's law with this reflectance, in [0, 1].
+    Diffuse(Spanned<Varying>),
+    /// A metal.
+    Conductor {
+        /// How it reflects without the coat.
+        optics: ConductorOptics,
+        /// Roughness.
+        roughness: RoughnessDesc,
     },
 }
 

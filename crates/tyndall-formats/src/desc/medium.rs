@@ -36,6 +36,22 @@ pub enum Coefficients {
         /// Scattering \[1/scene unit\].
         sigma_s: Spanned<SpectrumDesc>,
     },
+    /// Both coefficients, per millimetre.
+    PerMillimetre {
+        /// Absorption \[1/mm\].
+        sigma_a: Spanned<SpectrumDesc>,
+        /// Scattering \[1/mm\].
+        sigma_s: Spanned<SpectrumDesc>,
+    },
+    /// What a flat and deep body returns of the light that gets through its surface, and how far light flies in it.
+    Reflectance {
+        /// Share of the entering light that comes out again, under the same radiance from everywhere, in [0, 1].
+        reflectance: Spanned<SpectrumDesc>,
+        /// Mean free path 1/σ_t \[mm\].
+        mfp: Spanned<SpectrumDesc>,
+        /// Index of refraction of the body relative to the outside, at a smooth boundary.
+        eta: f64,
+    },
     /// Their sum, and the part of it that scatters.
     ExtinctionAlbedo {
         /// Extinction \[1/scene unit\].

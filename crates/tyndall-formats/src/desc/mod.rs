@@ -26,6 +26,7 @@ mod settings;
 mod shape;
 mod spectrum;
 mod texture;
+mod uses;
 
 use std::path::PathBuf;
 
@@ -34,10 +35,13 @@ pub use camera::{
     RealisticDesc, SphereMapping, ThinLensDesc,
 };
 pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
-pub use material::{ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind};
+pub use material::{
+    BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc,
+    ShadowingKind,
+};
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
-pub use shape::{GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
+pub use shape::{DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 pub use spectrum::SpectrumDesc;
 pub use texture::{
     Board, Encoding, ImageDesc, MappingDesc, NoiseDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind,

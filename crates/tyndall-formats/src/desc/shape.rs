@@ -1,7 +1,7 @@
 //! Shapes, groups and instances. Geometry stays in the shape's own space.
 
 use glam::DMat4;
-use tyndall::shape::DiskMapping;
+use tyndall::shape::{DiskMapping, SpherePart, Turn};
 
 use super::{AreaLightDesc, FileRef, GroupId, MaterialId, MediumInterface, Span, Spanned, Varying};
 
@@ -37,6 +37,8 @@ pub enum ShapeKind {
     Sphere {
         /// Radius, positive.
         radius: f64,
+        /// What of it there is.
+        part: SpherePart,
     },
     /// A disk, or a ring, around the z axis.
     Disk {
@@ -46,8 +48,19 @@ pub enum ShapeKind {
         radius: f64,
         /// Inner radius: 0 for a full disk.
         inner_radius: f64,
+        /// How far round it goes.
+        turn: Turn,
         /// Its texture coordinates.
         mapping: DiskMapping,
+    },
+    /// A cylinder around the z axis, without lids.
+    Cylinder {
+        /// Radius, positive.
+        radius: f64,
+        /// Its ends, in order.
+        heights: [f64; 2],
+        /// How far round it goes.
+        turn: Turn,
     },
     /// The square [-1, 1]² at z = 0, normal +z.
     Rectangle,
@@ -68,6 +81,17 @@ pub enum ShapeKind {
         smooth_normals: bool,
         /// Whether v of the texture coordinates runs the other way.
         flip_tex_coords: bool,
+        /// How its vertices are moved, if they are (pbrt).
+        displacement: Option<DisplacementDesc>,
+    },
+    /// The limit surface of triangles under Loop subdivision (pbrt). Its natural normal is against the winding.
+    Subdivision {
+        /// Corners.
+        positions: Vec<[f32; 3]>,
+        /// Three corners a triangle.
+        indices: Vec<[u32; 3]>,
+        /// How often triangles are divided.
+        levels: u32,
     },
     /// A Wavefront OBJ file.
     Obj {
@@ -90,6 +114,22 @@ pub enum ShapeKind {
         /// Whether normals of the file are left out and each face is flat; a mesh without normals is smoothed otherwise.
         face_normals: bool,
     },
+}
+
+impl ShapeKind {
+    /// A whole sphere.
+    pub const fn sphere(radius: f64) -> Self {
+        Self::Sphere { radius, part: SpherePart::WHOLE }
+    }
+}
+
+/// Heights over a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisplacementDesc {
+    /// The height along the normals, before [`ShapeDesc::to_world`].
+    pub height: Spanned<Varying>,
+    /// Triangles are cut until their edges are shorter than this, in the world; positive.
+    pub edge_length: f64,
 }
 
 /// Triangles. Checked by the reader: indices are in range, and normals and coordinates are none or as many as positions.

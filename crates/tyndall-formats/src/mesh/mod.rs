@@ -3,11 +3,13 @@
 //! A file is read whole, and nothing is allocated that its own bytes could not fill, so that a header which promises
 //! 10¹² vertices is an error and not an exhausted machine. What a reader returns has passed [`TriangleMesh::checked`].
 
+mod displace;
 mod normals;
 mod obj;
 mod ply;
 mod ply_binary;
 mod serialized;
+mod subdivide;
 
 use std::path::{Path, PathBuf};
 
@@ -15,9 +17,11 @@ use tyndall::math::{Vec2, Vec3};
 
 use crate::gzip;
 
+pub use displace::displace;
 pub use obj::{parse_obj, read_obj};
 pub use ply::{parse_ply, read_ply, write_ply};
 pub use serialized::{parse_serialized, read_serialized};
+pub use subdivide::subdivide;
 
 /// The longest mesh that a compressed file may hold \[bytes\]: some 50 million triangles.
 const MAX_INFLATED_BYTES: u64 = 1 << 31;
@@ -33,6 +37,10 @@ pub struct TriangleMesh {
     pub normals: Option<Vec<Vec3>>,
     /// Texture coordinates of each vertex, as the file has them.
     pub uvs: Option<Vec<Vec2>>,
+    /// Colour of each vertex.
+    pub colours: Option<Vec<[f32; 3]>>,
+    /// Colour of each triangle.
+    pub face_colours: Option<Vec<[f32; 3]>>,
 }
 
 /// Why a mesh file could not be read.
@@ -70,11 +78,15 @@ impl TriangleMesh {
         if let Some(i) = uvs.iter().position(|uv| !uv.is_finite()) {
             return Err(format!("the texture coordinates of vertex {i} are {}", uvs[i]));
         }
-        for (count, what) in
-            [(&self.normals.as_ref().map(Vec::len), "normals"), (&self.uvs.as_ref().map(Vec::len), "uvs")]
-        {
-            if count.is_some_and(|count| count != vertices) {
-                return Err(format!("has {vertices} vertices but {} {what}", count.unwrap_or_default()));
+        let (triangles, len) = (self.indices.len(), |list: &Option<Vec<[f32; 3]>>| list.as_ref().map(Vec::len));
+        for (found, count, what) in [
+            (self.normals.as_ref().map(Vec::len), vertices, "vertices but {} normals"),
+            (self.uvs.as_ref().map(Vec::len), vertices, "vertices but {} uvs"),
+            (len(&self.colours), vertices, "vertices but {} colours"),
+            (len(&self.face_colours), triangles, "triangles but {} colours"),
+        ] {
+            if let Some(found) = found.filter(|found| *found != count) {
+                return Err(format!("has {count} {}", what.replace("{}", &found.to_string())));
             }
         }
         Ok(self)

@@ -1,6 +1,7 @@
-//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `plastic`, `null`; `blendbsdf`, `mask`, and
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `plastic`, `null`; `blendbsdf`, `mask`, `bumpmap`, `normalmap`, and
 //! `twosided` around one that reflects or two.
 
+use tyndall::relief::Rule;
 use tyndall_optics::spectra;
 
 use super::object::{Child, Measure, Object, Report};
@@ -8,7 +9,7 @@ use super::scene::Builder;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
-    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
+    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind,
     SpectrumDesc, Varying,
 };
 use crate::error::SceneError;
@@ -154,10 +155,44 @@ impl<'t> Builder<'t> {
                 let ([of], opacity) = self.compound(&mut object, "opacity", two_sided)?;
                 MaterialKind::Mask { of, opacity }
             }
+            "bumpmap" | "normalmap" => self.embossed(plugin, &mut object, two_sided)?,
             _ => MaterialKind::Interface,
         };
         object.finish(&mut self.report);
         Some(kind)
+    }
+
+    /// A relief over another material. Of the texture of a `bumpmap` the name does not matter.
+    fn embossed(&mut self, plugin: &str, object: &mut Object<'t>, two_sided: bool) -> Option<MaterialKind> {
+        let scale = if plugin == "bumpmap" { object.float("scale", |_| true, "", &mut self.report) } else { None };
+        let rule = Rule::Mitsuba {
+            flips: object.flag("flip_invalid_normals", true, &mut self.report),
+            shadows: object.flag("use_shadowing_function", true, &mut self.report),
+            mirrored: two_sided,
+        };
+        let texture = match plugin {
+            "bumpmap" => object.only("texture", &mut self.report),
+            _ => object.object_of("normalmap", "texture"),
+        };
+        let bsdf = object.only("bsdf", &mut self.report);
+        let missing = match (&texture, &bsdf) {
+            (None, _) => Some("<texture>"),
+            (_, None) => Some("<bsdf>"),
+            _ => None,
+        };
+        if let Some(missing) = missing {
+            let error = SceneError::at(object.element.span, format!("\"{plugin}\" has no {missing} inside"));
+            self.report.errors.push(error);
+        }
+        let (texture, bsdf) = (texture?, bsdf?);
+        let of = self.part(&bsdf, two_sided);
+        let varying = self.texture(texture.element).map(|id| Spanned::new(Varying::Texture(id), texture.at.span));
+        let (of, texture) = (of?, varying?);
+        let map = match plugin {
+            "bumpmap" => ReliefMap::Heights { texture, scale: scale.map_or(1.0, |scale| scale.value) },
+            _ => ReliefMap::Normals(texture),
+        };
+        Some(MaterialKind::Embossed { of, map, rule })
     }
 
     /// Mitsuba's distribution is Beckmann's unless the file says otherwise, its α is that of the model, and

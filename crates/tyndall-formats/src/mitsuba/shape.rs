@@ -1,7 +1,7 @@
-//! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `obj`, `ply`, `serialized`, and `shapegroup` with `instance`.
+//! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `cylinder`, `obj`, `ply`, `serialized`, and `shapegroup` with `instance`.
 
-use glam::{DMat4, DVec3};
-use tyndall::shape::DiskMapping;
+use glam::{DMat3, DMat4, DVec3};
+use tyndall::shape::{DiskMapping, SpherePart, Turn};
 
 use super::object::Object;
 use super::scene::Builder;
@@ -81,10 +81,25 @@ impl<'t> Builder<'t> {
                 // Its v runs from the pole at +z to that at −z, ours the other way.
                 *to_world *= DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
                 let radius = object.float("radius", |radius| radius > 0.0, "greater than 0", report);
-                ShapeKind::Sphere { radius: radius.map_or(1.0, |radius| radius.value) }
+                ShapeKind::Sphere { radius: radius.map_or(1.0, |radius| radius.value), part: SpherePart::WHOLE }
             }
             "disk" => {
-                ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, mapping: DiskMapping::OutwardAzimuth }
+                let mapping = DiskMapping::OutwardAzimuth;
+                ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, turn: Turn::FULL, mapping }
+            }
+            "cylinder" => {
+                let [p0, p1] = [("p0", DVec3::ZERO), ("p1", DVec3::Z)]
+                    .map(|(name, default)| object.point(name, report).map_or(default, |p| p.value));
+                let radius = object.float("radius", |radius| radius > 0.0, "greater than 0", report);
+                let length = (p1 - p0).length();
+                let Some(along) = (p1 - p0).try_normalize() else {
+                    let error = SceneError::at(object.element.span, "the two ends of this cylinder are one point");
+                    report.errors.push(error.help("give \"p0\" and \"p1\" that differ"));
+                    return None;
+                };
+                *to_world *= DMat4::from_translation(p0) * DMat4::from_mat3(around(along));
+                let radius = radius.map_or(1.0, |radius| radius.value);
+                ShapeKind::Cylinder { radius, heights: [0.0, length], turn: Turn::FULL }
             }
             "rectangle" | "cube" => {
                 object.ignore(&["face_normals"], "its faces are flat", report);
@@ -104,7 +119,7 @@ impl<'t> Builder<'t> {
                 match plugin {
                     "obj" => ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords },
                     "serialized" => ShapeKind::Serialized { path, index, face_normals },
-                    _ => ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords },
+                    _ => ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement: None },
                 }
             }
         })
@@ -200,4 +215,16 @@ impl<'t> Builder<'t> {
         let group = Spanned::new(self.group(child.element), child.at.span);
         Some(InstanceDesc { span: element.span, group, to_world })
     }
+}
+
+/// To axes whose third is the unit vector `n`, those that Mitsuba takes (Duff et al. 2017): azimuth 0 is along the first.
+fn around(n: DVec3) -> DMat3 {
+    let sign = 1f64.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    DMat3::from_cols(
+        DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+        DVec3::new(b, sign + n.y * n.y * a, -n.y),
+        n,
+    )
 }

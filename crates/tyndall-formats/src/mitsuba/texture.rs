@@ -1,4 +1,4 @@
-//! `<texture>`: `bitmap` and `checkerboard`, and where a texture may stand for a number or a colour.
+//! `<texture>`: `bitmap`, `checkerboard` and `mesh_attribute`, and where a texture may stand for a number or a colour.
 //!
 //! Mitsuba's v runs downwards on a bitmap; ours runs upwards, so the mapping turns it round.
 
@@ -72,6 +72,11 @@ impl<'t> Builder<'t> {
     fn texture_kind(&mut self, element: &'t Element) -> Option<TextureKind> {
         let plugin = words::plugin(element, &mut self.report)?;
         let mut object = self.object(element);
+        if plugin == "mesh_attribute" {
+            let kind = self.attribute(&mut object);
+            object.finish(&mut self.report);
+            return kind;
+        }
         let to_uv = object.named_transform("to_uv", &mut self.report);
         let kind = if plugin == "bitmap" {
             self.bitmap(&mut object, to_uv).map(TextureKind::Image)
@@ -84,6 +89,25 @@ impl<'t> Builder<'t> {
         };
         object.finish(&mut self.report);
         kind
+    }
+
+    /// Colours of the mesh itself, by their name.
+    fn attribute(&mut self, object: &mut Object<'t>) -> Option<TextureKind> {
+        let scale = object.float("scale", |_| true, "", &mut self.report).map_or(1.0, |scale| scale.value);
+        let name = object.string("name", &mut self.report);
+        let error = match &name {
+            Some(name) if name.value == "vertex_color" => {
+                return Some(TextureKind::Attribute { of_faces: false, scale });
+            }
+            Some(name) if name.value == "face_color" => return Some(TextureKind::Attribute { of_faces: true, scale }),
+            Some(name) => {
+                let message = format!("the attribute \"{}\" of meshes is not known yet", name.value);
+                SceneError::not_yet(name.span, message).help("known are \"vertex_color\" and \"face_color\"")
+            }
+            None => SceneError::at(object.element.span, "the texture \"mesh_attribute\" lacks a \"name\""),
+        };
+        self.report.errors.push(error);
+        None
     }
 
     fn bitmap(&mut self, object: &mut Object<'t>, to_uv: DMat4) -> Option<ImageDesc> {

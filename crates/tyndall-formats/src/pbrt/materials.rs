@@ -2,20 +2,33 @@
 
 use std::borrow::Cow;
 
+use tyndall::relief::Rule;
+
 use super::Reader;
 use super::params::Params;
 use super::parser::Statement;
 use super::textures::Textures;
 use crate::desc::{
-    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind,
-    SpectrumDesc, Varying,
+    BaseDesc, CoatedDesc, ConductorOptics, Encoding, ImageDesc, MappingDesc, MaterialDesc, MaterialId, MaterialKind,
+    MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, TextureDesc, TextureId, TextureKind,
+    Varying, WrapKind,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 7] =
-    ["diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "mix", "interface"];
-const LATER_MATERIALS: [&str; 5] = ["coatedconductor", "coateddiffuse", "hair", "measured", "subsurface"];
+const MATERIALS: [&str; 10] = [
+    "coatedconductor",
+    "coateddiffuse",
+    "conductor",
+    "dielectric",
+    "diffuse",
+    "diffusetransmission",
+    "interface",
+    "mix",
+    "subsurface",
+    "thindielectric",
+];
+const LATER_MATERIALS: [&str; 2] = ["hair", "measured"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -32,6 +45,7 @@ impl Reader {
         let p = self.params("material", &mut s, &defaults);
         let desc = self.material_of(s.whole, None, &name, p);
         let id = MaterialId(self.materials.push(s.whole, desc));
+        self.fillings.settle(id);
         self.state.now.material = Some(Spanned::new(id, s.whole));
     }
 
@@ -47,7 +61,7 @@ impl Reader {
         }
         let kind = kind.unwrap_or(Spanned::new("interface".into(), name.span));
         let desc = self.material_of(s.whole, Some(name.value.to_string()), &kind, p);
-        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(drop));
+        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(|id| r.fillings.settle(MaterialId(id))));
     }
 
     pub(super) fn use_material(&mut self, name: &Spanned<Cow<'_, str>>) {
@@ -69,17 +83,48 @@ impl Reader {
             "dielectric" => dielectric(&mut p, &self.textures),
             "thindielectric" => thin_dielectric(&mut p),
             "diffusetransmission" => diffuse_transmission(&mut p, &self.textures),
+            "coateddiffuse" => coated_diffuse(&mut p, &self.textures),
+            "coatedconductor" => coated_conductor(&mut p, &self.textures),
             "mix" => self.mix(&mut p),
+            "subsurface" => self.subsurface(span, &mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
                 return MaterialDesc { name, ..MaterialDesc::pbrt_default(span) };
             }
         };
-        p.later("displacement");
-        p.later("normalmap");
+        let map = match made {
+            MaterialKind::Mix { .. } | MaterialKind::Interface => None,
+            _ => self.relief(&mut p),
+        };
         self.finish_params(p);
-        MaterialDesc { span, name, kind: made, two_sided: true }
+        let desc = MaterialDesc { span, name, kind: made, two_sided: true };
+        let Some(map) = map else { return desc };
+        let name = desc.name.clone();
+        let even = MaterialId(self.materials.push(span, MaterialDesc { name: None, ..desc }));
+        let kind = MaterialKind::Embossed { of: Spanned::new(even, span), map, rule: Rule::Pbrt };
+        MaterialDesc { span, name, kind, two_sided: true }
+    }
+
+    /// A normal map, or else a bump map.
+    fn relief(&mut self, p: &mut Params) -> Option<ReliefMap> {
+        let heights = p.number("displacement", &self.textures, |_| true);
+        let Some(file) = p.string_opt("normalmap") else {
+            return heights.map(|texture| ReliefMap::Heights { texture, scale: 1.0 });
+        };
+        let image = ImageDesc {
+            path: Spanned::new(p.resolve(&file.value), file.span),
+            mapping: MappingDesc::UV,
+            wrap: WrapKind::Repeat,
+            smooth: true,
+            scale: 1.0,
+            invert: false,
+            by_luminance: false,
+            encoding: Encoding::Linear,
+        };
+        let id = TextureId(self.textures.list.len() as u32);
+        self.textures.list.push(TextureDesc { span: file.span, name: None, kind: TextureKind::Image(image) });
+        Some(ReliefMap::Normals(file.map(|_| Varying::Texture(id))))
     }
 }
 
@@ -106,15 +151,22 @@ fn diffuse(p: &mut Params, textures: &Textures) -> MaterialKind {
 }
 
 fn conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
+    MaterialKind::Conductor {
+        optics: optics(p, textures, ["eta", "k"]),
+        roughness: roughness(p, textures, ROUGHNESS),
+        tint: None,
+    }
+}
+
+/// How a metal reflects, whose complex index has these names.
+fn optics(p: &mut Params, textures: &Textures, [eta, k]: [&'static str; 2]) -> ConductorOptics {
     let reflectance = p.varying_opt("reflectance", textures);
-    let given = [p.varying_opt("eta", textures), p.varying_opt("k", textures)];
-    let optics = match (reflectance, given) {
+    let given = [p.varying_opt(eta, textures), p.varying_opt(k, textures)];
+    match (reflectance, given) {
         (Some(reflectance), [None, None]) => ConductorOptics::Reflectance(reflectance),
         (Some(reflectance), _) => {
-            p.error(
-                SceneError::at(reflectance.span, "a conductor has either \"reflectance\" or \"eta\" and \"k\"")
-                    .help("leave out one of them"),
-            );
+            let message = format!("a conductor has either \"reflectance\" or \"{eta}\" and \"{k}\"");
+            p.error(SceneError::at(reflectance.span, message).help("leave out one of them"));
             ConductorOptics::Reflectance(reflectance)
         }
         (None, [eta, k]) => {
@@ -124,14 +176,59 @@ fn conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
                 k: k.unwrap_or_else(|| copper("metal-Cu-k")),
             }
         }
+    }
+}
+
+fn coated_diffuse(p: &mut Params, textures: &Textures) -> MaterialKind {
+    let base = BaseDesc::Diffuse(p.varying("reflectance", 0.5, textures));
+    coated(p, textures, "eta", ROUGHNESS, base)
+}
+
+fn coated_conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
+    let names = ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"];
+    let base = BaseDesc::Conductor {
+        optics: optics(p, textures, ["conductor.eta", "conductor.k"]),
+        roughness: roughness(p, textures, names),
     };
-    MaterialKind::Conductor { optics, roughness: roughness(p, textures), tint: None }
+    let names = ["interface.roughness", "interface.uroughness", "interface.vroughness"];
+    coated(p, textures, "interface.eta", names, base)
+}
+
+/// The coat, whose index and roughness have these names.
+fn coated(
+    p: &mut Params,
+    textures: &Textures,
+    eta: &'static str,
+    roughness_names: [&'static str; 3],
+    base: BaseDesc,
+) -> MaterialKind {
+    let thickness = p.amount("thickness", textures);
+    let g = p.number("g", textures, |_| true);
+    MaterialKind::Coated(Box::new(CoatedDesc {
+        eta: p.spectrum_or_float(eta, SpectrumDesc::Constant(1.5)),
+        roughness: roughness(p, textures, roughness_names),
+        thickness: thickness.unwrap_or(Spanned::new(Varying::constant(0.01), p.span)),
+        albedo: p.varying("albedo", 0.0, textures),
+        g: g.unwrap_or(Spanned::new(Varying::constant(0.0), p.span)),
+        base,
+        max_depth: few(p, "maxdepth", 10, 0),
+        walks: few(p, "nsamples", 1, 1),
+    }))
+}
+
+/// A number of at least `least`, of which more than 65535 are never wanted.
+fn few(p: &mut Params, name: &'static str, default: u16, least: u32) -> u16 {
+    let found = p.count(name, default.into(), least);
+    u16::try_from(found.value).unwrap_or_else(|_| {
+        p.error(SceneError::at(found.span, format!("\"{name}\" is at most {}", u16::MAX)));
+        default
+    })
 }
 
 fn dielectric(p: &mut Params, textures: &Textures) -> MaterialKind {
     MaterialKind::Dielectric {
         eta: p.spectrum_or_float("eta", SpectrumDesc::Constant(1.5)),
-        roughness: roughness(p, textures),
+        roughness: roughness(p, textures, ROUGHNESS),
         reflection_tint: None,
         transmission_tint: None,
     }
@@ -153,12 +250,15 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
     }
 }
 
-fn roughness(p: &mut Params, textures: &Textures) -> RoughnessDesc {
+/// The names of a roughness: along both tangents, along the first, along the second.
+pub(super) const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
+
+pub(super) fn roughness(p: &mut Params, textures: &Textures, [both, u, v]: [&'static str; 3]) -> RoughnessDesc {
     let smooth = Spanned::new(Varying::constant(0.0), p.span);
-    let both = p.amount("roughness", textures).unwrap_or(smooth);
+    let both = p.amount(both, textures).unwrap_or(smooth);
     RoughnessDesc {
-        u: p.amount("uroughness", textures).unwrap_or_else(|| both.clone()),
-        v: p.amount("vroughness", textures).unwrap_or(both),
+        u: p.amount(u, textures).unwrap_or_else(|| both.clone()),
+        v: p.amount(v, textures).unwrap_or(both),
         remap: p.boolean("remaproughness", true).value,
         distribution: MicrofacetKind::Ggx,
         shadowing: ShadowingKind::Correlated,

@@ -21,6 +21,8 @@ pub(super) struct Settings {
     integrator: Option<IntegratorDesc>,
     unit: Option<Spanned<LengthUnit>>,
     seed: Option<Spanned<u64>>,
+    /// Factor on the longest edges of displaced meshes.
+    pub(super) displacement_edge_scale: Option<f64>,
 }
 
 /// Settings with pbrt's defaults in place of what the file leaves out.
@@ -74,9 +76,8 @@ impl Settings {
 }
 
 /// Options of pbrt that change nothing here.
-const IGNORED_OPTIONS: [(&str, &str); 7] = [
+const IGNORED_OPTIONS: [(&str, &str); 6] = [
     ("disabletexturefiltering", "textures are looked up at points: the samples of a pixel filter them"),
-    ("displacementedgescale", "only displaced meshes read it, which are not known yet"),
     ("msereferenceimage", "`tyndall compare` takes the difference of two images"),
     ("msereferenceout", "`tyndall compare` takes the difference of two images"),
     ("pixelstats", "statistics are asked for on the command line"),
@@ -125,6 +126,12 @@ impl Reader {
                     self.settings.seed = Some(Spanned::new(seed as u64, s.whole));
                 }
                 _ => self.errors.push(SceneError::at(s.whole, "the seed must be an integer of at least 0")),
+            },
+            "displacementedgescale" => match s.numbers.first() {
+                Some(&scale) if scale > 0.0 && scale.is_finite() => {
+                    self.settings.displacement_edge_scale = Some(scale);
+                }
+                _ => self.errors.push(SceneError::at(s.whole, "the scale of edges must be greater than 0")),
             },
             _ if LATER_OPTIONS.contains(&&*word) => {
                 // What is switched off changes nothing.

@@ -1,17 +1,18 @@
 //! `Shape`.
 
-use tyndall::shape::DiskMapping;
+use tyndall::shape::{DiskMapping, SpherePart, Turn};
 
 use super::Reader;
 use super::param::ParamType;
 use super::params::Params;
 use super::parser::Statement;
-use crate::desc::{MaterialDesc, MaterialId, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
+use super::textures::Textures;
+use crate::desc::{DisplacementDesc, MaterialDesc, MaterialId, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 use crate::error::SceneError;
 use crate::source::Spanned;
 
-const SHAPES: [&str; 5] = ["sphere", "disk", "trianglemesh", "bilinearmesh", "plymesh"];
-const LATER_SHAPES: [&str; 3] = ["curve", "cylinder", "loopsubdiv"];
+const SHAPES: [&str; 7] = ["sphere", "disk", "cylinder", "trianglemesh", "bilinearmesh", "plymesh", "loopsubdiv"];
+const LATER_SHAPES: [&str; 1] = ["curve"];
 
 impl Reader {
     pub(super) fn shape(&mut self, mut s: Statement<'_>) {
@@ -24,9 +25,11 @@ impl Reader {
         let kind = match &*name.value {
             "sphere" => Some(sphere(&mut p)),
             "disk" => Some(disk(&mut p)),
+            "cylinder" => Some(cylinder(&mut p)),
             "trianglemesh" => triangles(&mut p).map(ShapeKind::TriangleMesh),
             "bilinearmesh" => patches(&mut p).map(ShapeKind::BilinearMesh),
-            _ => ply(&mut p),
+            "loopsubdiv" => subdivision(&mut p),
+            _ => ply(&mut p, &self.textures, self.settings.displacement_edge_scale.unwrap_or(1.0)),
         };
         let opacity = p.number("alpha", &self.textures, |_| true).filter(|a| a.value.number().is_none_or(|a| a < 1.0));
         // tyndall's own.
@@ -46,7 +49,7 @@ impl Reader {
         };
         let now = &self.state.now;
         // pbrt turns the normals of its quadrics round under a mirroring matrix; our natural normal stays outside.
-        let quadric = matches!(kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. });
+        let quadric = matches!(kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. } | ShapeKind::Cylinder { .. });
         let mirrored = quadric && now.ctm.determinant() < 0.0;
         ShapeDesc {
             span: s.whole,
@@ -90,15 +93,18 @@ impl Reader {
 
 fn sphere(p: &mut Params) -> ShapeKind {
     let radius = p.positive("radius", 1.0).value;
-    let (low, high) = (p.float("zmin", -radius), p.float("zmax", radius));
-    for cut in [low, high].into_iter().filter(|z| z.value.abs() < radius) {
-        p.error(
-            SceneError::not_yet(cut.span, "parts of spheres are not supported yet")
-                .help("leave out \"zmin\" and \"zmax\""),
-        );
-    }
-    p.later_unless("phimax", 360.0);
-    ShapeKind::Sphere { radius }
+    let heights = [p.float("zmin", -radius).value, p.float("zmax", radius).value];
+    ShapeKind::Sphere { radius, part: SpherePart::new(radius, heights, turn(p)) }
+}
+
+fn cylinder(p: &mut Params) -> ShapeKind {
+    let radius = p.positive("radius", 1.0).value;
+    let [a, b] = [p.float("zmin", -1.0).value, p.float("zmax", 1.0).value];
+    ShapeKind::Cylinder { radius, heights: [a.min(b), a.max(b)], turn: turn(p) }
+}
+
+fn turn(p: &mut Params) -> Turn {
+    Turn::degrees(p.positive("phimax", 360.0).value)
 }
 
 fn disk(p: &mut Params) -> ShapeKind {
@@ -108,8 +114,8 @@ fn disk(p: &mut Params) -> ShapeKind {
     if inner.value >= radius {
         p.error(SceneError::at(inner.span, "\"innerradius\" must be less than \"radius\""));
     }
-    p.later_unless("phimax", 360.0);
-    ShapeKind::Disk { height, radius, inner_radius: inner.value, mapping: DiskMapping::AzimuthInward }
+    let mapping = DiskMapping::AzimuthInward;
+    ShapeKind::Disk { height, radius, inner_radius: inner.value, turn: turn(p), mapping }
 }
 
 /// What triangles and patches have in common: corners, and one normal and one coordinate for each or none.
@@ -168,13 +174,27 @@ fn patches(p: &mut Params) -> Option<PatchDesc> {
     Some(PatchDesc { positions, indices, normals, uvs })
 }
 
-fn ply(p: &mut Params) -> Option<ShapeKind> {
-    p.later("displacement");
-    p.ignore("edgelength", "only displacement reads it");
+fn subdivision(p: &mut Params) -> Option<ShapeKind> {
+    p.ignore("scheme", "there is one scheme, Loop's");
+    let levels = p.count("levels", 3, 0).value;
+    let positions = p.tuples::<3>("P", &[ParamType::Point3]);
+    if !p.has("indices") || positions.value.is_empty() {
+        p.error(SceneError::at(p.span, "a loopsubdiv needs \"point3 P\" and \"integer indices\""));
+        p.skip("indices");
+        return None;
+    }
+    let indices = p.indices("indices", positions.value.len())?;
+    Some(ShapeKind::Subdivision { positions: positions.value, indices, levels })
+}
+
+fn ply(p: &mut Params, textures: &Textures, scale: f64) -> Option<ShapeKind> {
+    let height = p.number("displacement", textures, |_| true);
+    let edge_length = p.positive("edgelength", 1.0).value * scale;
+    let displacement = height.map(|height| DisplacementDesc { height, edge_length });
     let Some(file) = p.string_opt("filename") else {
         p.error(SceneError::at(p.span, "a plymesh needs \"string filename\""));
         return None;
     };
     let path = file.map(|name| p.resolve(&name));
-    Some(ShapeKind::Ply { path, face_normals: false, smooth_normals: false, flip_tex_coords: false })
+    Some(ShapeKind::Ply { path, face_normals: false, smooth_normals: false, flip_tex_coords: false, displacement })
 }

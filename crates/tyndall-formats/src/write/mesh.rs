@@ -1,6 +1,6 @@
 //! Meshes that the language cannot say in words: PLY files beside the scene.
 
-use crate::build::shapes::mesh_of;
+use crate::build::shapes::triangles_of;
 use crate::desc::{FileRef, ShapeDesc, ShapeKind};
 use crate::error::SceneError;
 use tyndall::shape::Mesh;
@@ -14,7 +14,7 @@ impl Draft<'_> {
     /// The name of a PLY file with the triangles of a shape as they are, normals and texture coordinates included. `None` if
     /// the mesh cannot be read, which is reported.
     pub(super) fn mesh(&mut self, shape: &ShapeDesc) -> Option<String> {
-        let mesh = match mesh_of(&shape.kind)? {
+        let mesh = match triangles_of(&shape.kind)? {
             Ok(mesh) => mesh,
             Err(error) => {
                 self.errors.push(SceneError::at(shape.span, error.to_string()));
@@ -32,6 +32,7 @@ impl Draft<'_> {
             indices: mesh.indices,
             normals: some(!mesh.normals.is_empty()).map(|()| mesh.normals),
             uvs: some(!mesh.uvs.is_empty()).map(|()| mesh.uvs),
+            ..TriangleMesh::default()
         };
         let mut bytes = Vec::new();
         // Writing to memory cannot fail.

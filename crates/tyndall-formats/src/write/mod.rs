@@ -22,7 +22,8 @@ mod sheet;
 
 use std::path::{Path, PathBuf};
 
-use crate::desc::{SceneDesc, Span};
+use crate::build::made::parts;
+use crate::desc::{MaterialDesc, MaterialId, MaterialKind, SceneDesc, Span};
 use crate::error::{Diagnostics, ErrorList, SceneError, Unsupported};
 use crate::source::SourceMap;
 
@@ -146,6 +147,15 @@ impl Draft<'_> {
     /// Warns of something that is not quite the same there.
     fn differs(&mut self, span: Span, message: &str) {
         self.errors.push(SceneError::warning(span, message));
+    }
+
+    /// Whether a material is part of such others only, which say it where they stand.
+    fn stands_inside(&self, id: MaterialId, wholes: fn(&MaterialKind) -> bool) -> bool {
+        let desc = self.desc;
+        let mut shapes = desc.shapes.iter().chain(desc.groups.iter().flat_map(|group| &group.shapes));
+        let is_part = |of: &&MaterialDesc| parts(&of.kind).iter().any(|part| part.value == id);
+        let mut owners = desc.materials.iter().filter(is_part).peekable();
+        owners.peek().is_some() && owners.all(|of| wholes(&of.kind)) && !shapes.any(|s| s.material.value == id)
     }
 
     /// A file as seen from the directory of the new scene.

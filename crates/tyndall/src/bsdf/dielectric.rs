@@ -63,31 +63,72 @@ impl Dielectric {
     /// The mirrored or the refracted direction.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_lobe: f32) -> Option<BsdfSample> {
+        let met = self.meet(wo)?;
+        Some(if u_lobe < met.split.p_reflect {
+            met.reflected(wo, met.split.p_reflect)
+        } else {
+            met.refracted(wo, 1.0 - met.split.p_reflect)
+        })
+    }
+
+    /// The mirrored direction, always; `None` where nothing is reflected.
+    #[inline]
+    pub(super) fn reflect(&self, wo: Vec3) -> Option<BsdfSample> {
+        self.meet(wo).filter(|met| !met.split.reflected.is_zero()).map(|met| met.reflected(wo, 1.0))
+    }
+
+    /// The refracted direction, always; `None` where all is reflected.
+    #[inline]
+    pub(super) fn refract(&self, wo: Vec3) -> Option<BsdfSample> {
+        self.meet(wo).filter(|met| !met.split.transmitted.is_zero()).map(|met| met.refracted(wo, 1.0))
+    }
+
+    #[inline]
+    fn meet(&self, wo: Vec3) -> Option<Met> {
         if wo.z == 0.0 {
             return None;
         }
         let eta = self.eta_from(wo);
         let facet = fresnel::dielectric(wo.z.abs(), eta);
-        let Split { reflected, transmitted, p_reflect } = self.split(facet.reflectance)?;
-        Some(if u_lobe < p_reflect {
-            BsdfSample {
-                wi: mirrored(wo),
-                weight: reflected / p_reflect,
-                pdf: p_reflect,
-                kind: ScatterKind::Reflection,
-                specular: true,
-                eta: 1.0,
-            }
-        } else {
-            let p_transmit = 1.0 - p_reflect;
-            BsdfSample {
-                wi: Vec3::new(-wo.x / eta, -wo.y / eta, -facet.cos_t.copysign(wo.z)),
-                weight: transmitted / (p_transmit * eta * eta),
-                pdf: p_transmit,
-                kind: ScatterKind::Transmission,
-                specular: true,
-                eta,
-            }
-        })
+        self.split(facet.reflectance).map(|split| Met { split, cos_t: facet.cos_t, eta })
+    }
+}
+
+/// How a direction meets the surface.
+#[derive(Clone, Copy)]
+struct Met {
+    split: Split,
+    /// The cosine of the refraction, on its own side.
+    cos_t: f32,
+    /// Index beyond the surface over that on the side of `wo`.
+    eta: f32,
+}
+
+impl Met {
+    /// The mirrored direction, taken with `probability`.
+    #[inline]
+    fn reflected(&self, wo: Vec3, probability: f32) -> BsdfSample {
+        BsdfSample {
+            wi: mirrored(wo),
+            weight: self.split.reflected / probability,
+            pdf: probability,
+            kind: ScatterKind::Reflection,
+            specular: true,
+            eta: 1.0,
+        }
+    }
+
+    /// The refracted direction, taken with `probability`.
+    #[inline]
+    fn refracted(&self, wo: Vec3, probability: f32) -> BsdfSample {
+        let eta = self.eta;
+        BsdfSample {
+            wi: Vec3::new(-wo.x / eta, -wo.y / eta, -self.cos_t.copysign(wo.z)),
+            weight: self.split.transmitted / (probability * eta * eta),
+            pdf: probability,
+            kind: ScatterKind::Transmission,
+            specular: true,
+            eta,
+        }
     }
 }

@@ -17,6 +17,7 @@
 pub mod fresnel;
 pub mod microfacet;
 
+mod coated;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -26,6 +27,7 @@ mod rough_conductor;
 mod rough_dielectric;
 mod thin_dielectric;
 
+pub use coated::{Base, Coated};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
@@ -118,6 +120,8 @@ pub enum Bsdf {
     DiffuseTransmission(DiffuseTransmission),
     /// A diffuse base under a smooth coat.
     Plastic(Plastic),
+    /// A base under a coat, rough or smooth, clear or cloudy.
+    Coated(Coated),
     /// No surface at all: a mere boundary of media.
     Null,
 }
@@ -160,18 +164,15 @@ impl Bsdf {
         }
     }
 
-    /// A metal with this reflectance in [0, 1] at normal incidence: index 1 and `k = 2√r / √(1 − r)`, `r ≤ 0.9999`
-    /// (pbrt's parameter `reflectance`).
+    /// A metal with this reflectance in [0, 1] at normal incidence: [`index_of_reflectance`].
     pub fn conductor_of_reflectance(reflectance: Lanes, alpha_x: f32, alpha_y: f32) -> Self {
-        let k = reflectance.map(|r| {
-            let r = r.clamp(0.0, 0.9999);
-            2.0 * r.sqrt() / (1.0 - r).sqrt()
-        });
-        Self::conductor(Lanes::ONE, k, alpha_x, alpha_y)
+        let [eta, k] = index_of_reflectance(reflectance);
+        Self::conductor(eta, k, alpha_x, alpha_y)
     }
 
     /// The same model with every reflection multiplied by `reflectance` and every transmission by `transmittance`
-    /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy.
+    /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy. What is
+    /// under a coat takes no tints.
     #[must_use]
     pub fn tinted(mut self, reflectance: Lanes, transmittance: Lanes) -> Self {
         match &mut self {
@@ -189,7 +190,17 @@ impl Bsdf {
                 model.reflectance *= reflectance;
                 model.transmittance *= transmittance;
             }
-            Self::Null => {}
+            Self::Coated(_) | Self::Null => {}
+        }
+        self
+    }
+
+    /// The same model with other random numbers, if it has any: [`Coated`].
+    #[must_use]
+    #[inline]
+    pub fn seeded(mut self, seed: impl FnOnce() -> u32) -> Self {
+        if let Self::Coated(model) = &mut self {
+            model.seed = seed();
         }
         self
     }
@@ -206,13 +217,14 @@ impl Bsdf {
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
             | Self::Plastic(_)
+            | Self::Coated(_)
             | Self::Null => return self,
         };
         (microfacets.distribution, microfacets.shadowing) = (distribution, shadowing);
         self
     }
 
-    /// The same model answering on `sides`; interfaces always have two.
+    /// The same model answering on `sides`; interfaces and coats always have two.
     #[must_use]
     pub fn on(mut self, sides: Sides) -> Self {
         match &mut self {
@@ -224,6 +236,7 @@ impl Bsdf {
             | Self::RoughDielectric(_)
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
+            | Self::Coated(_)
             | Self::Null => {}
         }
         self
@@ -238,6 +251,7 @@ impl Bsdf {
             Self::RoughDielectric(model) => model.eval(wo, wi),
             Self::DiffuseTransmission(model) => model.eval(wo, wi),
             Self::Plastic(model) => model.eval(wo, wi),
+            Self::Coated(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
@@ -251,6 +265,7 @@ impl Bsdf {
             Self::RoughDielectric(model) => model.pdf(wo, wi),
             Self::DiffuseTransmission(model) => model.pdf(wo, wi),
             Self::Plastic(model) => model.pdf(wo, wi),
+            Self::Coated(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
     }
@@ -267,6 +282,7 @@ impl Bsdf {
             Self::ThinDielectric(model) => model.sample(wo, u_lobe),
             Self::DiffuseTransmission(model) => model.sample(wo, u_lobe, u),
             Self::Plastic(model) => model.sample(wo, u_lobe, u),
+            Self::Coated(model) => model.sample(wo, u_lobe, u),
             Self::Null => Some(straight_on(wo)),
         }
     }
@@ -274,14 +290,20 @@ impl Bsdf {
     /// Whether there is nothing but Dirac lobes, so that light sampling is in vain.
     #[inline]
     pub fn is_specular(&self) -> bool {
-        matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null)
+        match self {
+            Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => true,
+            Self::Coated(model) => model.is_specular(),
+            _ => false,
+        }
     }
 
     /// Whether light can pass to the other side.
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {
-            Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) | Self::Plastic(_) => false,
+            Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) | Self::Plastic(_) | Self::Coated(_) => {
+                false
+            }
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),
@@ -289,6 +311,16 @@ impl Bsdf {
             Self::Null => true,
         }
     }
+}
+
+/// A complex index \[1\] with this reflectance at normal incidence: 1 and `k = 2√r / √(1 − r)`, `r` in [0, 0.9999] (pbrt's
+/// parameter `reflectance`).
+pub fn index_of_reflectance(reflectance: Lanes) -> [Lanes; 2] {
+    let k = reflectance.map(|r| {
+        let r = r.clamp(0.0, 0.9999);
+        2.0 * r.sqrt() / (1.0 - r).sqrt()
+    });
+    [Lanes::ONE, k]
 }
 
 /// The unscattered direction behind a surface that is not there.

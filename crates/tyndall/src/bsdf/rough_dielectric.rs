@@ -43,6 +43,21 @@ struct Facet {
     split: Split,
 }
 
+/// A microfacet that was drawn, seen with `wo` above the surface.
+#[derive(Clone, Copy)]
+struct Visible {
+    /// `wo`.
+    up: Vec3,
+    m: Vec3,
+    /// `o·m`, in [0, 1].
+    cos_o: f32,
+    /// The cosine of the refraction, on its own side.
+    cos_t: f32,
+    /// Index beyond the surface over that on the side of `wo`.
+    eta: f32,
+    split: Split,
+}
+
 impl RoughDielectric {
     /// `f·|cos θi|` [1/sr].
     #[inline]
@@ -74,6 +89,38 @@ impl RoughDielectric {
     /// The mirror image in, or the refraction through, a visible microfacet; `None` when it ends on the wrong side.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let met = self.visible(wo, u)?;
+        if u_lobe < met.split.p_reflect {
+            self.reflected(wo, &met, met.split.p_reflect)
+        } else {
+            self.refracted(wo, &met, 1.0 - met.split.p_reflect)
+        }
+    }
+
+    /// The mirror image in a visible microfacet, always.
+    #[inline]
+    pub(super) fn reflect(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        self.visible(wo, u).filter(|met| !met.split.reflected.is_zero()).and_then(|met| self.reflected(wo, &met, 1.0))
+    }
+
+    /// The refraction through a visible microfacet, always; `None` where all is reflected.
+    #[inline]
+    pub(super) fn refract(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        self.visible(wo, u).filter(|met| !met.split.transmitted.is_zero()).and_then(|met| self.refracted(wo, &met, 1.0))
+    }
+
+    /// The density [1/sr] of [`Self::refract`].
+    #[inline]
+    pub(super) fn refraction_pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.facet(wo, wi).filter(|facet| facet.cos_i < 0.0).map_or(0.0, |facet| {
+            self.microfacets.visible_density(facet.wo, facet.m)
+                * refraction_jacobian(facet.cos_o, facet.cos_i, facet.eta)
+        })
+    }
+
+    /// A microfacet among those that `wo` sees.
+    #[inline]
+    fn visible(&self, wo: Vec3, u: Vec2) -> Option<Visible> {
         if wo.z == 0.0 {
             return None;
         }
@@ -83,31 +130,38 @@ impl RoughDielectric {
         let eta = self.interface.eta_from(wo);
         let facet = fresnel::dielectric(cos_o, eta);
         let split = self.interface.split(facet.reflectance)?;
-        let d = self.microfacets.visible_density(up, m);
-        if u_lobe < split.p_reflect {
-            let wi = 2.0 * cos_o * m - up;
-            (wi.z > 0.0 && cos_o > 0.0).then(|| BsdfSample {
-                wi: seen_from(wo, wi),
-                weight: split.reflected * (self.microfacets.shadowing_of_visible(up, wi) / split.p_reflect),
-                pdf: split.p_reflect * d / (4.0 * cos_o),
-                kind: ScatterKind::Reflection,
-                specular: false,
-                eta: 1.0,
-            })
-        } else {
-            let wi = m * (cos_o / eta - facet.cos_t) - up / eta;
-            let p_transmit = 1.0 - split.p_reflect;
-            (wi.z < 0.0 && cos_o > 0.0).then(|| BsdfSample {
-                wi: seen_from(wo, wi),
-                weight: split.transmitted
-                    * (self.microfacets.shadowing_of_visible(up, Vec3::new(wi.x, wi.y, -wi.z))
-                        / (p_transmit * eta * eta)),
-                pdf: p_transmit * d * refraction_jacobian(cos_o, -facet.cos_t, eta),
-                kind: ScatterKind::Transmission,
-                specular: false,
-                eta,
-            })
-        }
+        Some(Visible { up, m, cos_o, cos_t: facet.cos_t, eta, split })
+    }
+
+    /// The mirror image in a microfacet that was drawn, taken with `probability`.
+    #[inline]
+    fn reflected(&self, wo: Vec3, met: &Visible, probability: f32) -> Option<BsdfSample> {
+        let Visible { up, m, cos_o, split, .. } = *met;
+        let wi = 2.0 * cos_o * m - up;
+        (wi.z > 0.0 && cos_o > 0.0).then(|| BsdfSample {
+            wi: seen_from(wo, wi),
+            weight: split.reflected * (self.microfacets.shadowing_of_visible(up, wi) / probability),
+            pdf: probability * self.microfacets.visible_density(up, m) / (4.0 * cos_o),
+            kind: ScatterKind::Reflection,
+            specular: false,
+            eta: 1.0,
+        })
+    }
+
+    /// The refraction through a microfacet that was drawn, taken with `probability`.
+    #[inline]
+    fn refracted(&self, wo: Vec3, met: &Visible, probability: f32) -> Option<BsdfSample> {
+        let Visible { up, m, cos_o, cos_t, eta, split } = *met;
+        let wi = m * (cos_o / eta - cos_t) - up / eta;
+        (wi.z < 0.0 && cos_o > 0.0).then(|| BsdfSample {
+            wi: seen_from(wo, wi),
+            weight: split.transmitted
+                * (self.microfacets.shadowing_of_visible(up, Vec3::new(wi.x, wi.y, -wi.z)) / (probability * eta * eta)),
+            pdf: probability * self.microfacets.visible_density(up, m) * refraction_jacobian(cos_o, -cos_t, eta),
+            kind: ScatterKind::Transmission,
+            specular: false,
+            eta,
+        })
     }
 
     /// `None` when no visible microfacet takes `wo` to `wi`. The Fresnel reflectance is the same, to the bit, from `wi`

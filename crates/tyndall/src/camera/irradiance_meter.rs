@@ -30,9 +30,12 @@ impl IrradianceMeter {
     #[inline]
     pub fn ray(&self, place: Vec2, turn: Vec2) -> CameraRay {
         let (piece, _, rest) = self.by_area.sample(place.x.clamp(0.0, 1.0));
-        let point = self.pieces[piece].sample_area(Vec2::new(rest, place.y.clamp(0.0, 1.0)));
+        let piece = &self.pieces[piece];
+        let point = piece.sample_area(Vec2::new(rest, place.y.clamp(0.0, 1.0)));
         let dir = Frame::around(point.ng).to_world(warp::cosine_hemisphere(turn)).normalize();
         let origin = offset_point(point.p, point.error, point.ng, dir);
-        CameraRay { ray: Ray::new(origin, dir), weight: PI }
+        // Points of an oblique cylinder are not uniform in area.
+        let weight = PI / (piece.area() * piece.pdf_area(point.p));
+        CameraRay { ray: Ray::new(origin, dir), weight }
     }
 }

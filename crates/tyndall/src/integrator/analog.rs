@@ -83,7 +83,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             Some(hit) => {
                 let mut surface = scene.geometry.interaction(&ray, &hit);
                 let (skin, beyond) = within.meet(scene, &mut surface, ray.dir, w, lane, tally);
-                let material = scene.meet(&surface, ray.dir, || sampler.next_1d());
+                let (material, relief) = scene.meet(&surface, ray.dir, || sampler.next_1d());
                 if matches!(material, Material::Hole) {
                     ray = surface.spawn(ray.dir);
                     continue;
@@ -91,14 +91,14 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                 if let Some((_, light)) = scene.light_at(&surface) {
                     radiance += throughput * light.le(surface.ng, -ray.dir, w).lane(lane);
                 }
-                let bsdf = skin.bsdf(material, &surface, w, lane);
+                let bsdf = skin.bsdf(material, &surface, w, lane).seeded(|| sampler.rng.next_u32());
                 if matches!(bsdf, Bsdf::Null) {
                     (within, inside) = (beyond, beyond.inside(scene, w));
                     ray = surface.spawn(ray.dir);
                     continue;
                 }
                 tally.surface_vertices += 1;
-                (Vertex::surface(surface, bsdf, ray.dir), beyond)
+                (Vertex::met(scene, surface, bsdf, ray.dir, relief), beyond)
             }
         };
 

@@ -95,7 +95,7 @@ impl Path {
             Event::Surface(mut hit) => {
                 let skin = if scene.has_bodies() { self.meet(scene, &mut hit, tally) } else { Skin::Written };
                 let sampler = &mut self.sampler;
-                let material = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
+                let (material, relief) = scene.meet(&hit, self.ray.dir, || sampler.next_1d());
                 let (bsdf, disperses) = match (skin, material) {
                     (_, Material::Hole) => {
                         self.pass_opening(scene, &hit);
@@ -108,7 +108,8 @@ impl Path {
                         return Status::Alive;
                     }
                     (Skin::Written, material) => {
-                        (material.bsdf(&(&hit).into(), &self.wavelengths, self.hero), material.disperses())
+                        let bsdf = material.bsdf(&(&hit).into(), &self.wavelengths, self.hero);
+                        (bsdf.seeded(|| sampler.rng.next_u32()), material.disperses())
                     }
                     (Skin::Between { eta, disperses }, material) => {
                         (material.bsdf_between(eta, &(&hit).into(), &self.wavelengths), disperses)
@@ -116,7 +117,7 @@ impl Path {
                 };
                 self.find_emitter(scene, &hit, sink);
                 tally.surface_vertices += 1;
-                let vertex = Vertex::surface(hit, bsdf, self.ray.dir);
+                let vertex = Vertex::met(scene, hit, bsdf, self.ray.dir, relief);
                 self.scatter(scene, settings, &vertex, disperses, sink, tally)
             }
             Event::Scatter { p, phase, emitted } => {
@@ -220,6 +221,10 @@ impl Path {
             tally.truncated_paths += 1;
             tally.truncated_throughput += f64::from(self.weights.throughput());
             return Status::Done;
+        }
+        // What only reflects is another BSDF for each wavelength, if it disperses: they part before light is sampled.
+        if disperses && !vertex.transmits() {
+            self.part_wavelengths();
         }
         let reference = vertex.reference();
         if vertex.can_use_light_samples() {

@@ -21,7 +21,7 @@ use crate::{
     path::{Vertex, shadow},
     phase::Phase,
     sampling::{Sampler, warp},
-    scene::Scene,
+    scene::{MaterialId, Scene},
     shape::Interaction,
     spectrum::Wavelengths,
     tally::Tally,
@@ -95,7 +95,7 @@ pub(super) struct Point {
 #[derive(Debug, Clone, Copy)]
 enum Place {
     Eye(Vec3),
-    Surface { hit: Interaction, bsdf: Bsdf, from_outside: bool, beyond: Record },
+    Surface { hit: Interaction, bsdf: Bsdf, relief: Option<MaterialId>, from_outside: bool, beyond: Record },
     Collision { p: Vec3, phase: Phase },
     Infinity,
 }
@@ -126,9 +126,9 @@ impl Point {
     }
 
     /// The vertex of the renderer that this point is, seen along `ω`.
-    fn vertex(&self, omega: Vec3) -> Option<Vertex> {
+    fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex> {
         match self.place {
-            Place::Surface { hit, bsdf, .. } => Some(Vertex::surface(hit, bsdf, -omega)),
+            Place::Surface { hit, bsdf, relief, .. } => Some(Vertex::met(scene, hit, bsdf, -omega, relief)),
             Place::Collision { p, phase } => Some(Vertex::Medium { p, dir: omega, phase }),
             Place::Eye(_) | Place::Infinity => None,
         }
@@ -223,15 +223,21 @@ impl<'a> World<'a> {
             let t = hit.t;
             let mut hit = self.scene.geometry.interaction(&ray, &hit);
             let (skin, beyond) = self.meet(within, &mut hit, omega);
-            let material = self.scene.meet(&hit, omega, || self.sampler.next_1d());
+            let (material, relief) = self.scene.meet(&hit, omega, || self.sampler.next_1d());
             if matches!(material, Material::Hole) {
                 gone += t;
                 ray = hit.spawn(omega);
                 continue;
             }
             let bsdf = skin.bsdf(material, &hit, &self.wavelengths, self.lane);
+            let bsdf = bsdf.seeded(|| self.sampler.rng.next_u32());
             let from_outside = omega.dot(hit.ng) < 0.0;
-            return Some(Point { place: Place::Surface { hit, bsdf, from_outside, beyond }, within, inside, distance });
+            return Some(Point {
+                place: Place::Surface { hit, bsdf, relief, from_outside, beyond },
+                within,
+                inside,
+                distance,
+            });
         }
     }
 
@@ -325,7 +331,7 @@ impl<'a> World<'a> {
     /// `brdf(x, ω, ω′)` [1/sr], for transmission too; zero for a Dirac, and at infinity.
     pub(super) fn brdf(&self, x: &Point, omega: Vec3, omega_prime: Vec3) -> f32 {
         let cosine = x.cosine(omega_prime);
-        match x.vertex(omega) {
+        match x.vertex(self.scene, omega) {
             Some(vertex) if cosine > 0.0 => vertex.eval(omega_prime).0.lane(self.lane) / cosine,
             _ => 0.0,
         }
@@ -334,7 +340,7 @@ impl<'a> World<'a> {
     /// `ω′ = uniformRandomPSA(n(x))`: cosine-weighted around the normal on the side of `ω`; on both sides where light
     /// passes through.
     pub(super) fn uniform_random_psa(&mut self, x: &Point, omega: Vec3) -> Vec3 {
-        let Some(Vertex::Surface { frame, wo, .. }) = x.vertex(omega) else { return omega };
+        let Some(Vertex::Surface { frame, wo, .. }) = x.vertex(self.scene, omega) else { return omega };
         self.tally.surface_vertices += 1;
         let mut local = warp::cosine_hemisphere(self.sampler.next_2d());
         let across = x.transmits() && self.random() < 0.5;
@@ -347,7 +353,7 @@ impl<'a> World<'a> {
     /// `ω′, pdf = brdfSample(x, n(x))`, with `brdf(x, ω, ω′)`, since of a Dirac both are coefficients that only the
     /// sampler knows. `None`: absorbed.
     pub(super) fn brdf_sample(&mut self, x: &Point, omega: Vec3) -> Option<(Vec3, f32, f32)> {
-        let vertex = x.vertex(omega)?;
+        let vertex = x.vertex(self.scene, omega)?;
         self.tally.surface_vertices += 1;
         let sample = vertex.sample([self.random(), self.random(), self.random()])?;
         let omega_prime = sample.ray.dir;
@@ -376,7 +382,7 @@ impl<'a> World<'a> {
 
     /// `ω′, pdf = phaseFunctionSample()`.
     pub(super) fn phase_function_sample(&mut self, x: &Point, omega: Vec3) -> Option<(Vec3, f32)> {
-        let sample = x.vertex(omega)?.sample([0.0, self.random(), self.random()])?;
+        let sample = x.vertex(self.scene, omega)?.sample([0.0, self.random(), self.random()])?;
         (sample.pdf > 0.0).then_some((sample.ray.dir, sample.pdf))
     }
 
@@ -390,7 +396,7 @@ impl<'a> World<'a> {
 
     /// `ω′, pdf = luminaireSampleSA(x)`, with the point `y` that was sampled: one luminaire is chosen, then a point on it.
     pub(super) fn luminaire_sample_sa(&mut self, x: &Point, omega: Vec3) -> Option<(Vec3, Luminaire, f32)> {
-        let vertex = x.vertex(omega)?;
+        let vertex = x.vertex(self.scene, omega)?;
         if !vertex.can_use_light_samples() {
             return None;
         }

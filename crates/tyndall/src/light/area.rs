@@ -5,7 +5,7 @@
 
 use std::f32::consts::PI;
 
-use super::{LightSample, Reference, Target};
+use super::{LightSample, Reference, Revolved, Target};
 use crate::{
     math::{Bounds, Frame, Vec2, Vec3, rounding::gamma},
     sampling::{spherical_rectangle::SphericalRectangle, warp},
@@ -73,6 +73,8 @@ pub enum EmitterShape {
         /// Radius of the hole [length].
         inner: f32,
     },
+    /// A cylinder, a part of a disk or of a sphere, an ellipsoid.
+    Revolved(Revolved),
 }
 
 /// A point on an emitter: place, unit normal, bound on the rounding error.
@@ -91,6 +93,7 @@ impl EmitterShape {
             Self::Parallelogram { e1, e2, .. } => e1.cross(e2).length(),
             Self::Sphere { radius, .. } => 4.0 * PI * radius * radius,
             Self::Disk { radius, inner, .. } => PI * (radius * radius - inner * inner),
+            Self::Revolved(revolved) => revolved.area(),
         }
     }
 
@@ -98,6 +101,8 @@ impl EmitterShape {
     pub fn projected_area(&self) -> f32 {
         match *self {
             Self::Sphere { radius, .. } => PI * radius * radius,
+            // Of a surface that bends round, no more than half faces one way.
+            Self::Revolved(revolved) if revolved.normal().is_none() => 0.5 * revolved.area(),
             _ => self.area(),
         }
     }
@@ -106,6 +111,7 @@ impl EmitterShape {
     pub fn normal(&self) -> Option<Vec3> {
         match *self {
             Self::Triangle { ng, .. } | Self::Parallelogram { ng, .. } | Self::Disk { ng, .. } => Some(ng),
+            Self::Revolved(revolved) => revolved.normal(),
             Self::Sphere { .. } => None,
         }
     }
@@ -120,14 +126,16 @@ impl EmitterShape {
                 let reach = (Vec3::ONE - ng * ng).max(Vec3::ZERO).map(f32::sqrt) * radius;
                 Bounds { min: centre - reach, max: centre + reach }
             }
+            Self::Revolved(revolved) => revolved.bounds(),
         }
     }
 
-    /// Which side of a flat emitter a point is on, as a height over its plane; `None` for a sphere.
+    /// Which side of a flat emitter a point is on, as a height over its plane; `None` for a curved one.
     fn height(&self, p: Vec3) -> Option<f32> {
         match *self {
             Self::Triangle { a, ng, .. } | Self::Parallelogram { a, ng, .. } => Some((p - a).dot(ng)),
             Self::Disk { centre, ng, .. } => Some((p - centre).dot(ng)),
+            Self::Revolved(revolved) => revolved.normal().map(|ng| (p - revolved.centre()).dot(ng)),
             Self::Sphere { .. } => None,
         }
     }
@@ -137,10 +145,11 @@ impl EmitterShape {
             Self::Triangle { a, e1, e2, .. } => a + (e1 + e2) / 3.0,
             Self::Parallelogram { a, e1, e2, .. } => a + (e1 + e2) * 0.5,
             Self::Sphere { centre, .. } | Self::Disk { centre, .. } => centre,
+            Self::Revolved(revolved) => revolved.centre(),
         }
     }
 
-    /// Uniform in area.
+    /// Uniform in area, or nearly so.
     pub(crate) fn sample_area(&self, u: Vec2) -> Point {
         match *self {
             Self::Triangle { a, e1, e2, ng } => {
@@ -161,6 +170,15 @@ impl EmitterShape {
                 let f = Frame::around(ng);
                 flat(centre, f.s * (d.x * stretch * radius), f.t * (d.y * stretch * radius), ng)
             }
+            Self::Revolved(revolved) => revolved.sample(u),
+        }
+    }
+
+    /// Density of [`Self::sample_area`] at a point [1/length²].
+    pub(crate) fn pdf_area(&self, p: Vec3) -> f32 {
+        match self {
+            Self::Revolved(revolved) => revolved.pdf(p),
+            _ => 1.0 / self.area(),
         }
     }
 }
@@ -222,7 +240,7 @@ impl AreaLight {
             _ => {}
         }
         let point = self.shape.sample_area(u);
-        let pdf = area_to_solid_angle(from.p, point.p, point.ng, self.shape.area());
+        let pdf = area_to_solid_angle(from.p, point.p, point.ng, self.shape.pdf_area(point.p));
         (point, pdf)
     }
 
@@ -242,7 +260,7 @@ impl AreaLight {
             }
             _ => {}
         }
-        area_to_solid_angle(from.p, p, ng, self.shape.area())
+        area_to_solid_angle(from.p, p, ng, self.shape.pdf_area(p))
     }
 
     /// A guess at the irradiance made at `p` [W·m⁻²]: zero only behind a one-sided flat emitter.
@@ -288,11 +306,12 @@ fn is_rectangle(e1: Vec3, e2: Vec3) -> bool {
     e1.dot(e2).abs() <= 1e-5 * (e1.length() * e2.length())
 }
 
-fn area_to_solid_angle(from: Vec3, p: Vec3, ng: Vec3, area: f32) -> f32 {
+/// A density per area, seen from a point.
+fn area_to_solid_angle(from: Vec3, p: Vec3, ng: Vec3, pdf: f32) -> f32 {
     let to_light = p - from;
     let d2 = to_light.length_squared();
     let cosine = (to_light.dot(ng)).abs() / d2.sqrt();
-    if cosine > 0.0 { d2 / (area * cosine) } else { 0.0 }
+    if cosine > 0.0 { d2 * pdf / cosine } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ pub mod distant;
 pub mod environment;
 mod hierarchy;
 pub mod point;
+pub mod revolved;
 pub mod spot;
 
 pub use area::{AreaLight, EmitterShape};
@@ -14,6 +15,7 @@ pub use choose::LightTable;
 pub use distant::Distant;
 pub use environment::{ConstantEnvironment, EnvironmentMap, Projection};
 pub use point::PointLight;
+pub use revolved::Revolved;
 pub use spot::{Falloff, SpotLight};
 
 use crate::{

@@ -51,6 +51,12 @@ impl Bounds {
         self.max - self.min
     }
 
+    /// Half of the surface [length²].
+    pub fn half_area(&self) -> f32 {
+        let Vec3 { x, y, z } = self.extent();
+        x * y + y * z + z * x
+    }
+
     /// The middle [length].
     pub fn centre(&self) -> Vec3 {
         self.min * 0.5 + self.max * 0.5

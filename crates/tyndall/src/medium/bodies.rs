@@ -22,7 +22,7 @@ use crate::{
     material::{Index, Material},
     math::Vec3,
     phase::Phase,
-    scene::{Object, Scene},
+    scene::{MaterialId, Object, Scene},
     shape::{Geometry, ObjectId},
     spectrum::{Lanes, Wavelengths},
 };
@@ -66,7 +66,7 @@ impl Body {
                 bodies.push(Self {
                     priority: member.priority,
                     medium: object.interface.and_then(|interface| interface.inside),
-                    index: materials[object.material.0 as usize].index().cloned(),
+                    index: even(materials, object.material).index().cloned(),
                     objects: Vec::new(),
                     closed: false,
                 });
@@ -79,6 +79,14 @@ impl Body {
             body.closed = geometry.is_closed(&body.objects);
         }
         bodies
+    }
+}
+
+/// A material without its relief.
+fn even(materials: &[Material], id: MaterialId) -> &Material {
+    match &materials[id.0 as usize] {
+        Material::Embossed { of, .. } => &materials[of.0 as usize],
+        plain => plain,
     }
 }
 

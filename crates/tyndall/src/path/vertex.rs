@@ -5,6 +5,8 @@ use crate::{
     light::Reference,
     math::{Frame, Ray, Vec2, Vec3},
     phase::{Phase, deflect},
+    relief::{Embossed, Relief, unshadowed},
+    scene::{MaterialId, Scene},
     shape::Interaction,
     spectrum::Lanes,
 };
@@ -22,6 +24,8 @@ pub enum Vertex {
         bsdf: Bsdf,
         /// Back along the path, local.
         wo: Vec3,
+        /// How a relief shadows itself: α² \[1\].
+        shadowing: Option<f32>,
     },
     /// In a medium.
     Medium {
@@ -62,21 +66,57 @@ impl Vertex {
         let frame = hit.shading_frame();
         let wo = frame.to_local(-dir);
         if may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
-            return Self::Surface { hit, frame, bsdf, wo };
+            return Self::Surface { hit, frame, bsdf, wo, shadowing: None };
         }
         let frame = Frame::around(hit.ng);
-        Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir) }
+        Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir), shadowing: None }
+    }
+
+    /// The same on the relief of an embossed material, if there is one.
+    #[inline]
+    pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf, dir: Vec3, relief: Option<MaterialId>) -> Self {
+        let even = Self::surface(hit, bsdf, dir);
+        match relief.and_then(|id| scene.relief(id)) {
+            Some(relief) => even.embossed(scene, dir, relief),
+            None => even,
+        }
+    }
+
+    #[inline(never)]
+    fn embossed(self, scene: &Scene, dir: Vec3, relief: &Relief) -> Self {
+        let Self::Surface { hit, frame: even, bsdf, wo: even_wo, .. } = self else { return self };
+        if even.n != hit.ns {
+            return self; // the true normal shades
+        }
+        let Embossed { frame, shadowing } = relief.emboss(&scene.geometry, &hit, &even, -dir);
+        let wo = frame.to_local(-dir);
+        if (wo.z * even_wo.z > 0.0 || !relief.is_mirrored()) && may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
+            return Self::Surface { hit, frame, bsdf, wo, shadowing };
+        }
+        if shadowing.is_none() {
+            return self;
+        }
+        Self::Surface { hit, frame: even, bsdf: Bsdf::diffuse(Lanes::ZERO), wo: even_wo, shadowing: None }
     }
 
     /// From where lights are looked at.
     #[inline]
     pub fn reference(&self) -> Reference {
         match self {
-            Self::Surface { hit, frame, bsdf, wo } => {
+            Self::Surface { hit, frame, bsdf, wo, .. } => {
                 let normal = (!bsdf.transmits()).then_some(if wo.z > 0.0 { frame.n } else { -frame.n });
                 Reference { p: hit.p, normal }
             }
             Self::Medium { p, .. } => Reference { p: *p, normal: None },
+        }
+    }
+
+    /// Whether light can go on beyond.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        match self {
+            Self::Surface { bsdf, .. } => bsdf.transmits(),
+            Self::Medium { .. } => true,
         }
     }
 
@@ -93,12 +133,16 @@ impl Vertex {
     #[inline]
     pub fn eval(&self, dir: Vec3) -> (Lanes, f32) {
         match self {
-            Self::Surface { hit, frame, bsdf, wo } => {
+            Self::Surface { hit, frame, bsdf, wo, shadowing } => {
                 let wi = frame.to_local(dir);
                 if !may_leave(bsdf, wi.z, dir.dot(hit.ng)) {
                     return (Lanes::ZERO, 0.0);
                 }
-                (bsdf.eval(*wo, wi), bsdf.pdf(*wo, wi))
+                let (value, pdf) = (bsdf.eval(*wo, wi), bsdf.pdf(*wo, wi));
+                match shadowing {
+                    None => (value, pdf),
+                    Some(alpha2) => (value * through_relief(*alpha2, wi.z, dir.dot(hit.ns)), pdf),
+                }
             }
             Self::Medium { dir: travel, phase, .. } => {
                 let value = phase.eval(travel.dot(dir));
@@ -111,7 +155,13 @@ impl Vertex {
     #[inline]
     pub fn sample(&self, [u_lobe, u, v]: [f32; 3]) -> Option<Scattered> {
         match self {
-            Self::Surface { hit, frame, bsdf, wo } => {
+            Self::Surface { hit, frame, bsdf, wo, shadowing: Some(alpha2) } => {
+                let mut scattered = sample_surface(hit, frame, bsdf, *wo, u_lobe, Vec2::new(u, v))?;
+                let dir = scattered.ray.dir;
+                scattered.weight *= through_relief(*alpha2, frame.n.dot(dir), dir.dot(hit.ns));
+                Some(scattered)
+            }
+            Self::Surface { hit, frame, bsdf, wo, shadowing: None } => {
                 let u = Vec2::new(u, v);
                 sample_surface(hit, frame, bsdf, *wo, u_lobe, u).or_else(|| {
                     // Clear glass has no other direction to offer: where the shading normal sends it to the wrong side of
@@ -170,6 +220,12 @@ fn sample_surface(hit: &Interaction, frame: &Frame, bsdf: &Bsdf, wo: Vec3, u_lob
         eta: sample.eta,
         crossed: sample.wi.z * wo.z < 0.0,
     })
+}
+
+/// The share of the light along a direction that a relief lets through, by its cosines with the normal of the relief and
+/// with the even one: nothing on different sides of them.
+fn through_relief(alpha2: f32, cos_relief: f32, cos_even: f32) -> f32 {
+    if cos_relief * cos_even > 0.0 { unshadowed(alpha2, cos_even) } else { 0.0 }
 }
 
 /// Whether light can come or go where the shading normal and the geometric normal see it at these cosines: on one side

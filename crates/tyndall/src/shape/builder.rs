@@ -1,7 +1,7 @@
 //! Gathers shapes and places them in the world.
 
 use super::{
-    Disk, Geometry, Mesh, ObjectId, Patch, Shape, Sphere,
+    Cylinder, Disk, Geometry, Mesh, ObjectId, Patch, Shape, Sphere,
     bvh::{
         NONE, Primitive, Tree, TriangleId,
         build::{Entry, build},
@@ -128,6 +128,23 @@ impl GeometryBuilder {
         self.add(Shape::Disk(disk))
     }
 
+    /// Adds a cylinder.
+    ///
+    /// # Errors
+    ///
+    /// If radius or height are not positive, or a coordinate not finite.
+    pub fn add_cylinder(
+        &mut self,
+        cylinder: Cylinder,
+        transform: &Transform,
+        reverse_orientation: bool,
+    ) -> Result<ObjectId, ShapeError> {
+        cylinder.check()?;
+        let cylinder = cylinder.placed(transform, reverse_orientation);
+        cylinder.check()?;
+        self.add(Shape::Cylinder(cylinder))
+    }
+
     /// Adds a bilinear patch; as a mesh of two triangles if it is flat.
     ///
     /// # Errors
@@ -211,14 +228,15 @@ impl GeometryBuilder {
         if entries.len() >= 1 << 27 {
             return Err(ShapeError::TooMany);
         }
-        Ok(build(&entries))
+        Ok(build(entries))
     }
 
     fn primitive(&self, object: u32) -> Primitive {
         match &self.shapes[object as usize] {
-            Shape::Sphere(Sphere { centre, radius, placement: None, .. }) => {
-                Primitive::Sphere { centre: *centre, radius: *radius, object, instance: NONE }
-            }
+            Shape::Sphere(sphere) => match sphere.round() {
+                Some((centre, radius)) => Primitive::Sphere { centre, radius, object, instance: NONE },
+                None => Primitive::Shape { object, instance: NONE },
+            },
             _ => Primitive::Shape { object, instance: NONE },
         }
     }
@@ -237,6 +255,7 @@ impl GeometryBuilder {
         let place = |&object: &u32| {
             let shape = &self.shapes[object as usize];
             if let Shape::Sphere(sphere) = shape
+                && sphere.part.is_whole()
                 && let Some((centre, radius)) = sphere.moved(placement)
             {
                 let bounds = Sphere::new(centre, radius).bounds();

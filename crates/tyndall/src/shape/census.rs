@@ -13,6 +13,8 @@ pub struct Census {
     pub spheres: usize,
     /// Disks and rings.
     pub disks: usize,
+    /// Cylinders.
+    pub cylinders: usize,
     /// Bilinear patches that are not flat.
     pub patches: usize,
     /// Placed groups.
@@ -36,6 +38,7 @@ impl Geometry {
                 }
                 Shape::Sphere(_) => census.spheres += 1,
                 Shape::Disk(_) => census.disks += 1,
+                Shape::Cylinder(_) => census.cylinders += 1,
                 Shape::Patch(_) => census.patches += 1,
             }
         }

@@ -1,9 +1,9 @@
 //! How far the nearest surface is at least.
 //!
 //! Particle-transport codes call it the safety: a flight that stays within it needs no ray. The bound is never above
-//! the true distance. It is the distance itself, less a few roundings, except for ellipsoids and for instances that
-//! are scaled unevenly, where lengths shrink at most by [`Placement::least_stretch`], and for patches, which stand
-//! inside the hull of their corners.
+//! the true distance. It is the distance itself, less a few roundings, except for ellipsoids, oblique cylinders, and
+//! instances that are scaled unevenly, where lengths shrink at most by [`Placement::least_stretch`]; for patches, which
+//! stand inside the hull of their corners; and for parts of spheres, disks and cylinders, which count as the whole.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, dispatch, f32x8};
@@ -80,6 +80,7 @@ impl Shape {
             Self::Mesh(_) => f64::INFINITY, // its triangles are in packets
             Self::Sphere(sphere) => sphere.clearance(p),
             Self::Disk(disk) => disk.clearance(p),
+            Self::Cylinder(cylinder) => cylinder.clearance(p),
             Self::Patch(patch) => patch.clearance(p),
         }
     }

@@ -3,22 +3,28 @@
 //! A disk is kept as its centre and two half-axes, so any affine map of a disk is a disk of the same kind (in general
 //! an ellipse).
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::{ShapeError, instance::outward, interaction::Point};
+use super::{
+    ShapeError,
+    derivatives::Local,
+    instance::outward,
+    interaction::Point,
+    part::{Turn, turns},
+};
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
 
 /// The texture coordinates of a disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DiskMapping {
-    /// u is the azimuth in turns; v runs from 0 at the rim to 1 at the inner edge (pbrt).
+    /// u is the azimuth over its range; v runs from 0 at the rim to 1 at the inner edge (pbrt).
     #[default]
     AzimuthInward,
     /// u is the radius, over that of the rim; v is the azimuth in turns (Mitsuba).
     OutwardAzimuth,
 }
 
-/// The points `centre + x·a + y·b` with `inner² ≤ x² + y² ≤ 1`.
+/// The points `centre + x·a + y·b` with `inner² ≤ x² + y² ≤ 1`, all the way round or some of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disk {
     /// Centre [length].
@@ -29,6 +35,8 @@ pub struct Disk {
     pub b: Vec3,
     /// Radius of the hole over that of the disk, in `[0, 1)` [1].
     pub inner: f32,
+    /// How far round it goes.
+    pub turn: Turn,
     /// Its texture coordinates.
     pub mapping: DiskMapping,
     /// Whether the normal is `−a × b`.
@@ -43,6 +51,7 @@ impl Disk {
             a: Vec3::X * radius,
             b: Vec3::Y * radius,
             inner: inner_radius / radius,
+            turn: Turn::FULL,
             mapping: DiskMapping::default(),
             reversed: false,
         }
@@ -52,6 +61,12 @@ impl Disk {
     #[must_use]
     pub fn mapped(self, mapping: DiskMapping) -> Self {
         Self { mapping, ..self }
+    }
+
+    /// Some of the way round.
+    #[must_use]
+    pub fn cut(self, turn: Turn) -> Self {
+        Self { turn, ..self }
     }
 
     /// Unit normal.
@@ -64,7 +79,7 @@ impl Disk {
         if self.reversed { -n } else { n }
     }
 
-    /// The outer radius [length] if the disk is a circle.
+    /// The outer radius [length] if the rim is a circle or part of one.
     pub fn radius(&self) -> Option<f32> {
         let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
         let square = a.length_squared();
@@ -80,7 +95,7 @@ impl Disk {
         if !(0.0..1.0).contains(&self.inner) {
             return Err(ShapeError::NotPositive { what: "width of the ring", value: 1.0 - self.inner });
         }
-        if self.outward() == DVec3::ZERO {
+        if self.outward() == DVec3::ZERO || self.turn.turns() <= 0.0 {
             return Err(ShapeError::NotPositive { what: "radius of the disk", value: 0.0 });
         }
         Ok(())
@@ -111,7 +126,8 @@ impl Disk {
         }
         let (x, y) = self.coordinates(from + ray.dir.as_dvec3() * t);
         let (square, inner) = (x * x + y * y, f64::from(self.inner));
-        (square <= 1.0 && square >= inner * inner).then_some(t as f32)
+        let is_there = square <= 1.0 && square >= inner * inner && self.turn.holds(DVec2::new(x, y));
+        is_there.then_some(t as f32)
     }
 
     /// `(x, y)` of a vector from the centre.
@@ -122,12 +138,25 @@ impl Disk {
         (b.cross(n).dot(v) / square, n.cross(a).dot(v) / square)
     }
 
+    /// By the parameters, at a point of the space that holds it.
+    pub(super) fn derivatives(&self, p: DVec3) -> Local {
+        let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
+        let (x, y) = self.coordinates(p - self.centre.as_dvec3());
+        let r = x.hypot(y);
+        let (cos, sin) = if r > 0.0 { (x / r, y / r) } else { (1.0, 0.0) };
+        let (out, round) = (a * cos + b * sin, (b * cos - a * sin) * (r * self.turn.radians()));
+        let dp = match self.mapping {
+            DiskMapping::AzimuthInward => [round, out * (f64::from(self.inner) - 1.0)],
+            DiskMapping::OutwardAzimuth => [out, round],
+        };
+        Local { dp, dn: [DVec3::ZERO; 2] }
+    }
+
     pub(super) fn point(&self, ray: &Ray, t: f32) -> Point {
         let (centre, n) = (self.centre.as_dvec3(), self.outward());
         let (a, b) = (self.a.as_dvec3(), self.b.as_dvec3());
         let (x, y) = self.coordinates(ray.origin.as_dvec3() - centre + ray.dir.as_dvec3() * f64::from(t));
-        let turn = y.atan2(x) / std::f64::consts::TAU;
-        let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+        let turn = turns(DVec2::new(x, y)) / self.turn.turns();
         let r = x.hypot(y);
         // At the centre the azimuth is 0.
         let (cos, sin) = if r == 0.0 { (1.0, 0.0) } else { (x / r, y / r) };
@@ -135,7 +164,7 @@ impl Disk {
             DiskMapping::AzimuthInward => {
                 let v = (1.0 - r) / (1.0 - f64::from(self.inner));
                 let along = if r == 0.0 { 1.0 } else { r };
-                ([turn, v], (b * cos - a * sin) * (along * std::f64::consts::TAU))
+                ([turn, v], (b * cos - a * sin) * (along * self.turn.radians()))
             }
             DiskMapping::OutwardAzimuth => ([r, turn], a * cos + b * sin),
         };

@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::{
-    Disk, Interaction, Mesh, Patch, Sphere,
+    Cylinder, Disk, Interaction, Mesh, Patch, Sphere,
     bvh::{
         NONE, Primitive, Tree,
         traverse::{Nearest, traverse},
@@ -47,6 +47,8 @@ pub enum Shape {
     Sphere(Sphere),
     /// A disk or a ring.
     Disk(Disk),
+    /// A cylinder without lids.
+    Cylinder(Cylinder),
     /// A bilinear patch that is not flat.
     Patch(Patch),
 }
@@ -57,6 +59,7 @@ impl Shape {
             Self::Mesh(mesh) => Bounds::of(mesh.positions.iter().copied()),
             Self::Sphere(sphere) => sphere.bounds(),
             Self::Disk(disk) => disk.bounds(),
+            Self::Cylinder(cylinder) => cylinder.bounds(),
             Self::Patch(patch) => patch.bounds(),
         }
     }
@@ -67,6 +70,7 @@ impl Shape {
             Self::Mesh(_) => None,
             Self::Sphere(sphere) => sphere.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
             Self::Disk(disk) => disk.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
+            Self::Cylinder(cylinder) => cylinder.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
             Self::Patch(patch) => patch.intersect(ray, t_max).map(|hit| (hit.t, hit.uv)),
         }
     }
@@ -76,6 +80,7 @@ impl Shape {
             Self::Mesh(mesh) => mesh.point(prim, uv),
             Self::Sphere(sphere) => sphere.point(ray, t),
             Self::Disk(disk) => disk.point(ray, t),
+            Self::Cylinder(cylinder) => cylinder.point(ray, t),
             Self::Patch(patch) => patch.point(uv),
         }
     }

@@ -51,10 +51,7 @@ impl Placement {
     /// A lower bound on the factor by which the map stretches lengths: `1/‖M⁻¹‖`, where the square of the norm is at
     /// most the largest row sum of `M⁻ᵀM⁻¹`; equal to it for rotations, uniform scales and scales along axes.
     pub(super) fn least_stretch(&self) -> f64 {
-        let m = self.to_local.matrix3;
-        let gram = m.transpose() * m;
-        let rows = [gram.x_axis, gram.y_axis, gram.z_axis].map(|r| r.abs().element_sum());
-        (1.0 - 1e-12) / rows[0].max(rows[1]).max(rows[2]).sqrt()
+        least_stretch(self.to_local.matrix3)
     }
 
     /// The factor of a similarity (rotation, mirroring, uniform scale), exact to rounding.
@@ -94,6 +91,13 @@ impl Placement {
             dpdu: map.transform_vector3(point.dpdu),
         }
     }
+}
+
+/// The same for a map whose inverse this is.
+pub(super) fn least_stretch(inverse: DMat3) -> f64 {
+    let gram = inverse.transpose() * inverse;
+    let rows = [gram.x_axis, gram.y_axis, gram.z_axis].map(|r| r.abs().element_sum());
+    (1.0 - 1e-12) / rows[0].max(rows[1]).max(rows[2]).sqrt()
 }
 
 fn as_double(map: &Affine3) -> DAffine3 {

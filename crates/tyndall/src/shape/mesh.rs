@@ -29,6 +29,15 @@ impl Mesh {
         self.indices[prim as usize].map(|i| self.positions[i as usize])
     }
 
+    /// The parameters of the corners of a triangle.
+    #[inline]
+    pub(super) fn corner_uvs(&self, prim: u32) -> [Vec2; 3] {
+        if self.uvs.is_empty() {
+            return [Vec2::ZERO, Vec2::X, Vec2::ONE];
+        }
+        self.indices[prim as usize].map(|i| self.uvs[i as usize])
+    }
+
     pub(super) fn check(&self) -> Result<(), ShapeError> {
         let vertices = self.positions.len();
         if let Some(triangle) = self.indices.iter().position(|t| t.iter().any(|&i| i as usize >= vertices)) {
@@ -73,8 +82,7 @@ impl Mesh {
             let [n0, n1, n2] = corners.map(|i| self.normals[i].as_dvec3());
             n0 * (1.0 - b1 - b2) + n1 * b1 + n2 * b2
         };
-        let [uv0, uv1, uv2] =
-            if self.uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::ONE] } else { corners.map(|i| self.uvs[i]) };
+        let [uv0, uv1, uv2] = self.corner_uvs(prim);
         // Double precision leaves 2⁻⁵² of the longest edge, times the aspect of the triangle when the distance to its
         // plane is asked for: this is good up to an aspect of 2¹⁸.
         let longest = e1.abs().max_element().max(e2.abs().max_element());

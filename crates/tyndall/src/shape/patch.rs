@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Mesh, ShapeError, interaction::Point};
+use super::{Mesh, ShapeError, derivatives::Local, interaction::Point};
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
 
 /// The surface `(1−u)(1−v)·p₀₀ + u(1−v)·p₁₀ + (1−u)v·p₀₁ + uv·p₁₁`, facing `∂p/∂u × ∂p/∂v`.
@@ -94,6 +94,16 @@ impl Patch {
             }
         }
         best
+    }
+
+    /// By the parameters.
+    pub(super) fn derivatives(&self, uv: Vec2) -> Local {
+        let [p00, p10, p01, p11] = self.corners.map(Vec3::as_dvec3);
+        let (u, v) = (f64::from(uv.x), f64::from(uv.y));
+        let dpdu = (p10 - p00).lerp(p11 - p01, v);
+        let dpdv = (p01 - p00).lerp(p11 - p10, u);
+        let twist = p11 - p10 - p01 + p00;
+        Local::of_normal([dpdu, dpdv], dpdu.cross(dpdv), [dpdu.cross(twist), twist.cross(dpdv)])
     }
 
     pub(super) fn point(&self, uv: Vec2) -> Point {

@@ -3,6 +3,8 @@
 //! Corners are the same if their coordinates are: meshes repeat vertices where normals or texture coordinates jump.
 //! Faces that have shrunk to a line count for nothing.
 
+use rayon::prelude::*;
+
 use super::{Geometry, Mesh, ObjectId, Patch, Shape};
 use crate::math::Vec3;
 
@@ -16,12 +18,13 @@ pub struct Seams {
 }
 
 impl Geometry {
-    /// The edges of what these objects are together. A sphere has none and is closed; a disk has one, which is open.
+    /// The edges of what these objects are together. A sphere has none and is closed, unless a part of it is missing; a
+    /// disk has one and a cylinder two, which are open.
     pub fn seams(&self, objects: &[ObjectId]) -> Seams {
         let mut edges = Vec::new();
         let rims = self.for_each_edge(objects, |edge| edges.push(edge));
         // Along an edge and against it, side by side.
-        edges.sort_unstable();
+        edges.par_sort_unstable();
         let open: i64 = edges
             .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
             .map(|edge| edge.iter().map(|(_, _, along)| if *along { 1 } else { -1 }).sum::<i64>().abs())
@@ -33,12 +36,18 @@ impl Geometry {
     ///
     /// Told without memory: edges are hashed to 128 bits and added, those that run the other way subtracted.
     pub fn is_closed(&self, objects: &[ObjectId]) -> bool {
-        let mut sum = 0u128;
-        let rims = self.for_each_edge(objects, |(a, b, along)| {
-            let hash = hash(&a, &b);
-            sum = if along { sum.wrapping_add(hash) } else { sum.wrapping_sub(hash) };
+        let sums = objects.iter().map(|&object| match self.shape(object) {
+            Shape::Sphere(sphere) => sphere.part.is_whole().then_some(0),
+            Shape::Disk(_) | Shape::Cylinder(_) => None,
+            Shape::Mesh(mesh) => {
+                let faces = (0..mesh.indices.len() as u32).into_par_iter();
+                let faces = faces.map(|prim| sum(face_edges(mesh.triangle(prim), mesh.reversed)));
+                Some(faces.reduce(|| 0, u128::wrapping_add))
+            }
+            Shape::Patch(patch) => Some(sum(patch_edges(patch))),
         });
-        sum == 0 && rims == 0
+        let total = sums.reduce(|a, b| Some(a?.wrapping_add(b?)));
+        total.is_none_or(|total| total == Some(0))
     }
 
     /// Calls `visit` for every edge that has corners; returns the number of those that have none, and are open.
@@ -46,8 +55,9 @@ impl Geometry {
         let mut rims = 0;
         for &object in objects {
             match self.shape(object) {
-                Shape::Sphere(_) => {}
+                Shape::Sphere(sphere) => rims += usize::from(!sphere.part.is_whole()),
                 Shape::Disk(_) => rims += 1,
+                Shape::Cylinder(_) => rims += 2,
                 Shape::Mesh(mesh) => mesh_edges(mesh).for_each(&mut visit),
                 Shape::Patch(patch) => patch_edges(patch).for_each(&mut visit),
             }
@@ -74,6 +84,14 @@ fn face_edges<const N: usize>(corners: [Vec3; N], reversed: bool) -> impl Iterat
         .map(move |i| (names[i], names[(i + 1) % N]))
         .filter(|(a, b)| a != b)
         .map(move |(a, b)| if a < b { (a, b, !reversed) } else { (b, a, reversed) })
+}
+
+/// The sum of the hashes of edges, negative for those that run the other way.
+fn sum(edges: impl Iterator<Item = Edge>) -> u128 {
+    edges.fold(0, |sum, (a, b, along)| {
+        let hash = hash(&a, &b);
+        if along { sum.wrapping_add(hash) } else { sum.wrapping_sub(hash) }
+    })
 }
 
 /// Two rounds of `SplitMix64` over the coordinates, from two seeds.

@@ -9,13 +9,15 @@ use glam::{DMat3, DVec3};
 
 use super::{
     ShapeError,
+    derivatives::Local,
     instance::{Placement, outward},
     interaction::Point,
+    part::{SpherePart, turns},
 };
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
 
-/// A full sphere. Its poles are along its own z axis: `u` is the azimuth in turns, `v` runs from the south pole to
-/// the north pole.
+/// A sphere or a part of it. Its poles are along its own z axis: `u` is the azimuth over its range, `v` runs from the
+/// south pole to the north pole, or from the southern rim to the northern one, with the angle from the axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Sphere {
     /// Centre [length].
@@ -24,6 +26,8 @@ pub struct Sphere {
     pub radius: f32,
     /// Whether the normal points to the centre.
     pub reversed: bool,
+    /// What of it there is.
+    pub part: SpherePart,
     /// To the sphere's own axes (of a unit or mirrored unit matrix).
     pub(super) axes: DMat3,
     /// For spheres that the world sees as ellipsoids.
@@ -33,12 +37,28 @@ pub struct Sphere {
 impl Sphere {
     /// A sphere around `centre`.
     pub fn new(centre: Vec3, radius: f32) -> Self {
-        Self { centre, radius, reversed: false, axes: DMat3::IDENTITY, placement: None }
+        let part = SpherePart::WHOLE;
+        Self { centre, radius, reversed: false, part, axes: DMat3::IDENTITY, placement: None }
     }
 
-    /// Centre and radius in the world [length], unless the world sees an ellipsoid.
+    /// A part of it.
+    #[must_use]
+    pub fn cut(self, part: SpherePart) -> Self {
+        Self { part, ..self }
+    }
+
+    /// Centre and radius in the world [length], unless the world sees an ellipsoid or a part.
     pub fn round(&self) -> Option<(Vec3, f32)> {
-        self.placement.is_none().then_some((self.centre, self.radius))
+        (self.placement.is_none() && self.part.is_whole()).then_some((self.centre, self.radius))
+    }
+
+    /// Centre, and the half-axes of what the world sees: the columns [length].
+    pub(crate) fn axes(&self) -> (DVec3, DMat3) {
+        let (centre, axes) = (self.centre.as_dvec3(), self.axes.transpose() * f64::from(self.radius));
+        match &self.placement {
+            None => (centre, axes),
+            Some(placement) => (placement.map().transform_point3(centre), placement.map().matrix3 * axes),
+        }
     }
 
     pub(super) fn check(&self) -> Result<(), ShapeError> {
@@ -47,6 +67,9 @@ impl Sphere {
         }
         if self.radius <= 0.0 {
             return Err(ShapeError::NotPositive { what: "radius", value: self.radius });
+        }
+        if self.part.share() <= 0.0 {
+            return Err(ShapeError::NotPositive { what: "area of the part of the sphere", value: 0.0 });
         }
         Ok(())
     }
@@ -94,9 +117,24 @@ impl Sphere {
     #[inline]
     pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<f32> {
         match &self.placement {
-            None => nearest(self.centre, self.radius, ray, t_max),
-            Some(placement) => nearest(self.centre, self.radius, &placement.ray_to_local(ray), t_max),
+            None => self.intersect_local(ray, t_max),
+            Some(placement) => self.intersect_local(&placement.ray_to_local(ray), t_max),
         }
+    }
+
+    #[inline]
+    fn intersect_local(&self, ray: &Ray, t_max: f32) -> Option<f32> {
+        if self.part.is_whole() {
+            return nearest(self.centre, self.radius, ray, t_max);
+        }
+        let (centre, radius) = (self.centre.as_dvec3(), f64::from(self.radius));
+        let from = ray.origin.as_dvec3() - centre;
+        let is_there = |t: &f64| {
+            let n = (from + ray.dir.as_dvec3() * *t).normalize_or_zero();
+            *t > 0.0 && self.part.holds(self.axes * n)
+        };
+        let t = roots(centre, radius, ray)?.into_iter().find(is_there)? as f32;
+        (t > 0.0 && t < t_max).then_some(t)
     }
 
     pub(super) fn point(&self, ray: &Ray, t: f32) -> Point {
@@ -119,7 +157,7 @@ impl Sphere {
         };
         let outward = (ray.origin.as_dvec3() - centre + ray.dir.as_dvec3() * t).normalize_or(DVec3::Z);
         let local = self.axes * outward;
-        let (uv, dpdu) = parameters(local, radius);
+        let (uv, dpdu) = self.parameters(local);
         let ng = if self.reversed { -outward } else { outward };
         Point {
             p: centre + outward * radius,
@@ -130,17 +168,36 @@ impl Sphere {
             dpdu: self.axes.transpose() * dpdu,
         }
     }
-}
 
-/// `(u, v)` of a direction from the centre, and the derivative of the point by `u`.
-fn parameters(n: DVec3, radius: f64) -> (Vec2, DVec3) {
-    use std::f64::consts::{PI, TAU};
-    let phi = n.y.atan2(n.x);
-    let u = if phi < 0.0 { phi / TAU + 1.0 } else { phi / TAU };
-    let v = 1.0 - n.z.clamp(-1.0, 1.0).acos() / PI;
-    let around = DVec3::new(-n.y, n.x, 0.0);
-    let dpdu = if around == DVec3::ZERO { DVec3::Y } else { around };
-    (Vec2::new(u as f32, v as f32), dpdu * (TAU * radius))
+    /// By the parameters, at a point of the space that holds it.
+    pub(super) fn derivatives(&self, p: DVec3) -> Local {
+        let place = self.placement.as_ref();
+        let local = place.map_or(p, |placement| placement.local_point(p)) - self.centre.as_dvec3();
+        let n = (self.axes * local).normalize_or(DVec3::Z);
+        let SpherePart { z, turn } = self.part;
+        let [south, north] = z.map(f64::acos);
+        let rho = n.truncate().length();
+        let [cos, sin] = if rho > 0.0 { [n.x / rho, n.y / rho] } else { [1.0, 0.0] };
+        let du = DVec3::new(-n.y, n.x, 0.0) * turn.radians();
+        let dv = DVec3::new(n.z * cos, n.z * sin, -rho) * (north - south);
+        let dn = [du, dv].map(|d| self.axes.transpose() * d);
+        let local = Local { dp: dn.map(|d| d * f64::from(self.radius)), dn };
+        place.map_or(local, |placement| {
+            let normal = placement.map().matrix3.inverse().transpose() * (self.axes.transpose() * n);
+            local.placed(&placement.map(), normal.normalize())
+        })
+    }
+
+    /// `(u, v)` of a direction from the centre, and the derivative of the point by `u`.
+    fn parameters(&self, n: DVec3) -> (Vec2, DVec3) {
+        let SpherePart { z, turn } = self.part;
+        let [south, north] = z.map(f64::acos);
+        let u = turns(n.truncate()) / turn.turns();
+        let v = (n.z.clamp(-1.0, 1.0).acos() - south) / (north - south);
+        let around = DVec3::new(-n.y, n.x, 0.0);
+        let dpdu = if around == DVec3::ZERO { DVec3::Y } else { around };
+        (Vec2::new(u as f32, v as f32), dpdu * (turn.radians() * f64::from(self.radius)))
+    }
 }
 
 /// The least positive distance to a sphere before `t_max`.

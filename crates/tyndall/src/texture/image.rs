@@ -55,6 +55,15 @@ pub enum Grey {
     Luminance,
 }
 
+impl Grey {
+    fn of(self, rgb: [f32; 3]) -> f32 {
+        match self {
+            Self::Mean => super::mean(rgb),
+            Self::Luminance => srgb::luminance(rgb),
+        }
+    }
+}
+
 /// A picture on a surface: a reflectance or a number.
 #[derive(Debug, Clone)]
 pub struct ImageTexture {
@@ -72,6 +81,8 @@ pub struct ImageTexture {
     pub invert: bool,
     /// What number a colour stands for.
     pub grey: Grey,
+    /// The least value: 0 but for heights, which may be negative [1].
+    pub least: f32,
     /// The greatest value, for what must be a share of light [1].
     pub most: f32,
 }
@@ -84,18 +95,27 @@ impl ImageTexture {
         let found = self.picture.look_up(Vec2::new(st.x, 1.0 - st.y), self.wrap, self.interpolation);
         found.map(|v| {
             let v = v * self.scale;
-            (if self.invert { 1.0 - v } else { v }).clamp(0.0, self.most)
+            (if self.invert { 1.0 - v } else { v }).clamp(self.least, self.most)
         })
     }
 
     /// One number at a point.
     #[inline]
     pub fn number(&self, at: &TexturePoint) -> f32 {
-        let rgb = self.rgb(at);
-        match self.grey {
-            Grey::Mean => super::mean(rgb),
-            Grey::Luminance => srgb::luminance(rgb),
+        self.grey.of(self.rgb(at))
+    }
+
+    /// The slope of the number by u and v, within a cell between the centres of four pixels; values are not limited.
+    /// `None` where the place does not follow from u and v alone.
+    pub fn gradient(&self, at: &TexturePoint) -> Option<Vec2> {
+        let Mapping2::Uv(map) = &self.mapping else { return None };
+        if self.interpolation == Interpolation::Nearest {
+            return Some(Vec2::ZERO);
         }
+        let st = self.mapping.at(at);
+        let slope = self.picture.slope(Vec2::new(st.x, 1.0 - st.y), self.wrap).map(|rgb| self.grey.of(rgb));
+        let by_st = Vec2::new(slope[0], -slope[1]) * if self.invert { -self.scale } else { self.scale };
+        Some(map.matrix2.transpose() * by_st)
     }
 
     /// The lanes of a path at a point.
@@ -130,13 +150,35 @@ impl Picture {
         if interpolation == Interpolation::Nearest {
             return self.pixel(x.floor() as i64, y.floor() as i64, wrap);
         }
-        let (x, y) = (x - 0.5, y - 0.5);
-        let (column, row) = (x.floor(), y.floor());
-        let (dx, dy) = ((x - column) as f32, (y - row) as f32);
-        let (column, row) = (column as i64, row as i64);
-        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.pixel(column + i, row + j, wrap));
+        let (corners, [dx, dy]) = self.cell(x, y, wrap);
         let weights = [(1.0 - dx) * (1.0 - dy), dx * (1.0 - dy), (1.0 - dx) * dy, dx * dy];
         std::array::from_fn(|c| (0..4).map(|i| weights[i] * corners[i][c]).sum())
+    }
+
+    /// How fast the bilinear value changes to the right and downwards, over the width and the height of the picture.
+    fn slope(&self, at: Vec2, wrap: Wrap) -> [[f32; 3]; 2] {
+        if !at.is_finite() {
+            return [[0.0; 3]; 2];
+        }
+        let [width, height] = [self.width, self.height].map(f64::from);
+        let (corners, [dx, dy]) = self.cell(f64::from(at.x) * width, f64::from(at.y) * height, wrap);
+        let [upper_left, upper_right, lower_left, lower_right] = corners;
+        let across = |c: usize, w: f32, [a, b, p, q]: [[f32; 3]; 4]| (b[c] - a[c]) * (1.0 - w) + (q[c] - p[c]) * w;
+        let rows = [upper_left, upper_right, lower_left, lower_right];
+        let columns = [upper_left, lower_left, upper_right, lower_right];
+        [
+            std::array::from_fn(|c| across(c, dy, rows) * width as f32),
+            std::array::from_fn(|c| across(c, dx, columns) * height as f32),
+        ]
+    }
+
+    /// The four pixels around a place, in pixels, and how far it is from the first to the others.
+    fn cell(&self, x: f64, y: f64, wrap: Wrap) -> ([[f32; 3]; 4], [f32; 2]) {
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (column, row) = (x.floor(), y.floor());
+        let part = [(x - column) as f32, (y - row) as f32];
+        let (column, row) = (column as i64, row as i64);
+        ([(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.pixel(column + i, row + j, wrap)), part)
     }
 
     fn pixel(&self, column: i64, row: i64, wrap: Wrap) -> [f32; 3] {
@@ -200,9 +242,10 @@ mod tests {
             scale: 1.0,
             invert: false,
             grey,
+            least: 0.0,
             most: 1.0,
         };
-        let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z };
+        let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z, part: None };
         assert!((texture(Grey::Mean).number(&at) - 1.0 / 3.0).abs() < 1e-6);
         assert!((texture(Grey::Luminance).number(&at) - 0.7152).abs() < 1e-4);
     }
@@ -217,10 +260,41 @@ mod tests {
             scale: 0.25,
             invert,
             grey: Grey::Mean,
+            least: 0.0,
             most: 1.0,
         };
-        let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v), n: Vec3::Z };
+        let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v), n: Vec3::Z, part: None };
         assert_eq!(texture(false).rgb(&at(0.25, 0.25))[0], 0.5); // lower left: 2
         assert_eq!(texture(true).rgb(&at(0.75, 0.25))[0], 0.25); // lower right: 3
+    }
+
+    /// The slope is the limit of differences, whatever the mapping, on either side of a pixel's centre.
+    #[test]
+    fn the_gradient_is_the_limit_of_differences() {
+        let picture = Picture { width: 3, height: 2, pixels: [0.0, 1.0, 0.5, 2.0, 0.3, 0.9].map(|v| [v; 3]).to_vec() };
+        let turned = glam::Affine2::from_scale_angle_translation(Vec2::new(1.3, 0.7), 0.4, Vec2::new(0.2, 0.1));
+        for (mapping, invert) in [(Mapping2::UV, false), (Mapping2::Uv(turned), true)] {
+            let texture = ImageTexture {
+                picture: Arc::new(picture.clone()),
+                mapping,
+                wrap: Wrap::Repeat,
+                interpolation: Interpolation::Bilinear,
+                scale: 0.8,
+                invert,
+                grey: Grey::Mean,
+                least: f32::MIN,
+                most: f32::MAX,
+            };
+            let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v), n: Vec3::Z, part: None };
+            for (u, v) in [(0.3, 0.6), (0.05, 0.1), (0.77, 0.93)] {
+                let step = 1e-3;
+                let difference = |du: f32, dv: f32| {
+                    (texture.number(&at(u + du, v + dv)) - texture.number(&at(u - du, v - dv))) / (2.0 * step)
+                };
+                let expected = Vec2::new(difference(step, 0.0), difference(0.0, step));
+                let found = texture.gradient(&at(u, v)).unwrap();
+                assert!((found - expected).length() < 2e-3, "{u} {v}: {found} {expected}");
+            }
+        }
     }
 }

@@ -109,7 +109,7 @@ impl World {
         Material::Mix { of: [self.part(first), self.part(second)], amount: amount.into() }
     }
 
-    fn object(&mut self, material: Material, interface: Option<MediumInterface>) {
+    pub(crate) fn object(&mut self, material: Material, interface: Option<MediumInterface>) {
         self.materials.push(material);
         self.objects.push(Object {
             name: String::new(),

@@ -2,7 +2,7 @@
 
 use parry3d::query::RayCast;
 use tyndall::math::{Ray, Transform, Vec2, Vec3};
-use tyndall::shape::{Disk, Geometry, GeometryBuilder, Mesh, Patch, Sphere};
+use tyndall::shape::{Cylinder, Disk, Geometry, GeometryBuilder, Mesh, Patch, Sphere, SpherePart, Turn};
 
 use super::{
     affine,
@@ -65,7 +65,7 @@ fn what_is_hit_occludes() {
     }
 }
 
-/// Spheres, disks, patches, meshes, in the world and in groups.
+/// Spheres, disks, cylinders, parts of them, patches, meshes, in the world and in groups.
 pub(super) fn everything(random: &mut Random) -> Geometry {
     let mut builder = GeometryBuilder::new();
     for _ in 0..20 {
@@ -73,15 +73,22 @@ pub(super) fn everything(random: &mut Random) -> Geometry {
         builder.add_sphere(Sphere::new(random.in_ball(), 0.3), &transform, false).unwrap();
         builder.add_sphere(Sphere::new(random.in_ball(), 0.1), &Transform::IDENTITY, true).unwrap();
         builder.add_disk(Disk::new(0.1, 0.5, 0.2), &transform, false).unwrap();
+        let half = Turn::degrees(180.0);
+        builder.add_cylinder(Cylinder::new(0.2, [-0.3, 0.3], half), &transform, false).unwrap();
+        let part = SpherePart::new(0.2, [-0.05, 0.1], half);
+        builder.add_sphere(Sphere::new(random.in_ball(), 0.2).cut(part), &transform, false).unwrap();
         builder.add_patch(Patch::new([0; 4].map(|_| random.in_ball())), &transform, false).unwrap();
     }
     let group = builder.begin_group();
     builder.add_mesh(displaced_sphere(6, 0.1), &Transform::IDENTITY, false).unwrap();
     builder.add_sphere(Sphere::new(Vec3::X, 0.5), &Transform::IDENTITY, false).unwrap();
     builder.add_disk(Disk::new(1.5, 0.5, 0.0), &Transform::IDENTITY, false).unwrap();
+    builder.add_cylinder(Cylinder::new(0.4, [-0.3, 0.8], Turn::FULL), &Transform::IDENTITY, false).unwrap();
     builder.end_group();
     let ball = builder.begin_group();
     builder.add_sphere(Sphere::new(Vec3::Y, 0.5), &Transform::IDENTITY, false).unwrap();
+    let cap = SpherePart::new(0.5, [0.2, 0.5], Turn::FULL);
+    builder.add_sphere(Sphere::new(Vec3::X, 0.5).cut(cap), &Transform::IDENTITY, false).unwrap();
     builder.end_group();
     for _ in 0..20 {
         let transform = random_affine(random, 0.1);
@@ -257,6 +264,9 @@ fn an_instance_is_its_shapes_transformed() {
             builder.add_mesh(displaced_sphere(8, 0.1), t, false).unwrap();
             builder.add_sphere(Sphere::new(Vec3::X * 2.0, 0.5), t, true).unwrap();
             builder.add_disk(Disk::new(1.5, 0.5, 0.0), t, false).unwrap();
+            builder.add_cylinder(Cylinder::new(0.3, [-3.0, -2.0], Turn::degrees(200.0)), t, true).unwrap();
+            let part = SpherePart::new(0.5, [-0.3, 0.4], Turn::degrees(300.0));
+            builder.add_sphere(Sphere::new(Vec3::Y * 2.0, 0.5).cut(part), t, false).unwrap();
             builder.add_patch(Patch::new([Vec3::Y * -2.0, Vec3::X, Vec3::Z, -Vec3::ONE]), t, false).unwrap();
         };
         let mut placed = GeometryBuilder::new();

@@ -171,7 +171,7 @@ fn shapes_keep_their_files_and_sides() {
          <transform name=\"to_world\"><scale value=\"2\"/></transform><boolean name=\"flip_normals\" value=\"TRUE\"/></shape>",
     );
     assert_eq!(sphere.to_world.transform_point3(DVec3::ZERO), DVec3::new(2.0, 4.0, 6.0));
-    assert_eq!((sphere.kind, sphere.reverse_orientation), (ShapeKind::Sphere { radius: 4.0 }, true));
+    assert_eq!((sphere.kind, sphere.reverse_orientation), (ShapeKind::sphere(4.0), true));
     let ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } =
         shape("<shape type=\"obj\"><string name=\"filename\" value=\"meshes/bunny.obj\"/></shape>").kind
     else {
@@ -211,7 +211,7 @@ fn parameters_are_replaced_wherever_they_stand() {
         "<default name=\"r\" value=\"2\"/><default name=\"r2\" value=\"$r.5\"/><default name=\"r\" value=\"9\"/>\
          <shape type=\"sphere\" id=\"a\\$b\"><float name=\"radius\" value=\"$r2\"/></shape>",
     ));
-    assert_eq!(s.shapes[0].kind, ShapeKind::Sphere { radius: 2.5 });
+    assert_eq!(s.shapes[0].kind, ShapeKind::sphere(2.5));
     assert_eq!(s.shapes[0].name.as_deref(), Some("a$b"));
 }
 
@@ -243,7 +243,7 @@ fn included_files_and_directories_are_found_beside_the_scene() {
     let endless = load(&room.join("loop.xml"), &[], Unsupported::Refuse).unwrap_err().to_string();
     std::fs::remove_dir_all(&room).unwrap();
     assert_eq!(sources.files().len(), 3);
-    assert_eq!(s.shapes[0].kind, ShapeKind::Sphere { radius: 7.0 });
+    assert_eq!(s.shapes[0].kind, ShapeKind::sphere(7.0));
     let ShapeKind::Ply { path, .. } = &s.shapes[1].kind else { panic!() };
     assert_eq!(path.value, room.join("parts/meshes/a.ply"));
     assert_eq!(s.shapes[1].material.value, s.shapes[2].material.value);

@@ -27,7 +27,7 @@ const FAULTS: &[(&str, &str)] = &[
     (r"<shape/>", r#"2:2: <shape> lacks the attribute "type""#),
     (
         r#"<shape type="cube"><bsdf type="hair"/></shape>"#,
-        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "blendbsdf", "mask""#,
+        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "blendbsdf", "mask", "bumpmap", "normalmap""#,
     ),
     (
         r#"<medium type="heterogeneous"><float name="x" value="1"/></medium>"#,
@@ -35,7 +35,7 @@ const FAULTS: &[(&str, &str)] = &[
     ),
     (
         r#"<shape type="bsplinecurve"/>"#,
-        r#"2:14: the shape "bsplinecurve" is not known yet | known are "sphere", "rectangle", "cube", "disk", "obj", "ply", "serialized", "shapegroup", "instance""#,
+        r#"2:14: the shape "bsplinecurve" is not known yet | known are "sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "serialized", "shapegroup", "instance""#,
     ),
     (
         r#"<shape type="sphere"><float name="radios" value="1"/></shape>"#,
@@ -71,7 +71,7 @@ const FAULTS: &[(&str, &str)] = &[
     ),
     (
         r#"<bsdf type="diffuse"><texture name="reflectance" type="volume"/></bsdf>"#,
-        r#"2:56: the texture "volume" is not known yet | known are "bitmap", "checkerboard""#,
+        r#"2:56: the texture "volume" is not known yet | known are "bitmap", "checkerboard", "mesh_attribute""#,
     ),
     (
         r#"<shape type="cube"><boolean name="flip_normals" value="yes"/></shape>"#,

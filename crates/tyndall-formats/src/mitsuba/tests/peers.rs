@@ -59,7 +59,7 @@ fn marble_keeps_its_coefficients_and_glass_its_index() {
 
     let milk = loaded("c_milk_sphere.xml");
     let PhaseDesc::HenyeyGreenstein { g } = milk.media[0].phase else { panic!() };
-    assert_eq!((g.value, &milk.shapes[0].kind), (0.8, &ShapeKind::Sphere { radius: 20.0 }));
+    assert_eq!((g.value, &milk.shapes[0].kind), (0.8, &ShapeKind::sphere(20.0)));
 }
 
 /// The file names no distribution: Mitsuba's is Beckmann's.
@@ -116,7 +116,7 @@ fn the_picture_is_not_mirrored() {
 fn instances_share_their_group_and_keep_their_places() {
     let s = loaded("f_grains.xml");
     assert_eq!((s.groups[0].name.as_str(), s.groups[0].shapes.len()), ("grain", 1));
-    assert_eq!(s.groups[0].shapes[0].kind, ShapeKind::Sphere { radius: 0.44 });
+    assert_eq!(s.groups[0].shapes[0].kind, ShapeKind::sphere(0.44));
     assert!(s.instances.iter().all(|instance| instance.group.value.0 == 0));
     let first = s.instances[0].to_world.transform_point3(DVec3::ZERO);
     assert_eq!(first, DVec3::new(-5.98890, -5.94910, -5.44553));

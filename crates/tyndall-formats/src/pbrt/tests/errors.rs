@@ -54,7 +54,7 @@ fn what_pbrt_knows_and_this_reader_does_not_yet_is_said_to_be_so() {
     check(&[
         (
             "Shape \"curve\" \"point3 P\" [ 0 0 0 ] \"float width0\" 0.1",
-            "1:18 the shape \"curve\" is not supported yet [supported are \"sphere\", \"disk\", \"trianglemesh\", \"bilinearmesh\", \"plymesh\"]",
+            "1:18 the shape \"curve\" is not supported yet [supported are \"sphere\", \"disk\", \"cylinder\", \"trianglemesh\", \"bilinearmesh\", \"plymesh\", \"loopsubdiv\"]",
         ),
         (
             "Material \"hair\" \"float eumelanin\" 1.3",
@@ -66,8 +66,8 @@ fn what_pbrt_knows_and_this_reader_does_not_yet_is_said_to_be_so() {
         ),
         ("Material \"diffuse\" \"texture reflectance\" \"wood\"", "1:53 no spectrum texture is called \"wood\""),
         (
-            "Shape \"sphere\" \"float phimax\" 90",
-            "1:27 \"phimax\" of shape \"sphere\" is not supported yet [leave it out]",
+            "Shape \"bilinearmesh\" \"string emissionfilename\" \"a.png\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ]",
+            "1:33 \"emissionfilename\" of shape \"bilinearmesh\" is not supported yet [leave it out]",
         ),
         (
             "LightSource \"point\" \"float power\" 60",

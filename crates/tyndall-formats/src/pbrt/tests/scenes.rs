@@ -51,7 +51,7 @@ fn the_milk_stands_inside_a_glass_sphere_and_the_lamp_looks_down_at_it() {
     assert_eq!((milk.phase, milk.scale.value), (PhaseDesc::Isotropic, 1.0));
 
     let [lamp, _, sphere] = &desc.shapes[..] else { panic!("{} shapes", desc.shapes.len()) };
-    assert_eq!(sphere.kind, ShapeKind::Sphere { radius: 20.0 });
+    assert_eq!(sphere.kind, ShapeKind::sphere(20.0));
     let interface = sphere.interface.unwrap();
     assert_eq!((interface.inside.map(|m| m.0), interface.outside), (Some(0), None));
     let glass = desc.material(sphere.material.value).unwrap();
@@ -89,7 +89,7 @@ fn two_thousand_grains_are_one_group_and_its_instances() {
     assert_eq!((desc.groups.len(), desc.instances.len()), (1, 2000));
     let group = desc.group(GroupId(0)).unwrap();
     assert_eq!((&*group.name, group.shapes.len()), ("grain", 1));
-    assert_eq!(group.shapes[0].kind, ShapeKind::Sphere { radius: 1.0 });
+    assert_eq!(group.shapes[0].kind, ShapeKind::sphere(1.0));
     assert!(desc.instances.iter().all(|i| i.group.value == GroupId(0)));
     assert_eq!(desc.instances[0].to_world.w_axis.truncate(), DVec3::new(-0.0444, 1.0915, 0.0));
 }

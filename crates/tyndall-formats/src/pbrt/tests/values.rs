@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
-use tyndall::shape::DiskMapping;
+use tyndall::shape::{DiskMapping, Turn};
 
 use super::{parse, scene, world};
 use crate::desc::{
@@ -37,10 +37,16 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
         LightSource "point" LightSource "spot" LightSource "distant" LightSource "infinite"
         LightSource "infinite" "string filename" "sky.exr" "float scale" 2"#,
     );
-    assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 1.0 });
+    assert_eq!(desc.shapes[0].kind, ShapeKind::sphere(1.0));
     assert_eq!(
         desc.shapes[1].kind,
-        ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, mapping: DiskMapping::AzimuthInward }
+        ShapeKind::Disk {
+            height: 0.0,
+            radius: 1.0,
+            inner_radius: 0.0,
+            turn: Turn::FULL,
+            mapping: DiskMapping::AzimuthInward
+        }
     );
     // The material of shapes before any Material comes first.
     let [default, diffuse, conductor, dielectric, interface, pane, leaf] = &desc.materials[..] else { panic!() };
@@ -195,7 +201,7 @@ fn attribute_sets_defaults_that_a_shape_may_override_and_need_not_use() {
         Shape "sphere""#,
     );
     let radii: Vec<_> = desc.shapes.iter().map(|s| s.kind.clone()).collect();
-    assert_eq!(radii, [3.0, 4.0, 1.0].map(|radius| ShapeKind::Sphere { radius }));
+    assert_eq!(radii, [3.0, 4.0, 1.0].map(ShapeKind::sphere));
 }
 
 #[test]
@@ -349,4 +355,52 @@ fn a_gbuffer_has_the_layers_of_pbrt() {
     let wanted = ["Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"];
     assert_eq!(names[..9], wanted);
     assert_eq!(names[9..], ["Ns.X", "Ns.Y", "Ns.Z", "u", "v"]);
+}
+
+/// 470 nm in 16 bands of 29.375 nm, called by their middles; the render must have wavelengths.
+#[test]
+fn a_spectral_film_has_bands_of_wavelengths() {
+    use tyndall::film::{Bands, Recorded};
+    use tyndall::spectrum::ColorMode;
+    let film = |params: &str| {
+        let text = format!("Film \"spectral\" {params} WorldBegin Shape \"sphere\"");
+        super::parse(std::path::Path::new("scene.pbrt"), &text)
+    };
+    let (desc, sources) = film("").unwrap();
+    assert_eq!(desc.film.layers.len(), 4);
+    assert_eq!(desc.film.layers[0].channels, ["S0.374,688nm", "S0.404,062nm", "S0.433,438nm", "S0.462,812nm"]);
+    let bands = |i: usize| match desc.film.layers[i].recorded {
+        Recorded::Light(bands) => bands,
+        Recorded::Surface(_) => panic!(),
+    };
+    assert_eq!(bands(1), Bands { first: 360.0 + 4.0 * 29.375, width: 29.375, count: 4 });
+    assert_eq!(desc.film.color(), ColorMode::Spectral);
+    let error = crate::build::build(&desc, sources.clone(), ColorMode::Rgb).unwrap_err();
+    assert_eq!(error.errors[0].message, "this film records wavelengths, and the render has colours only");
+    crate::build::build(&desc, sources, ColorMode::Spectral).unwrap();
+
+    let (desc, _) = film(r#""integer nbuckets" 5 "float lambdamin" 400 "float lambdamax" 700"#).unwrap();
+    assert_eq!(desc.film.layers[1].channels, ["S0.670,000nm"]);
+    for wrong in [
+        r#""integer nbuckets" 0"#,
+        r#""integer nbuckets" 1025"#,
+        r#""float lambdamin" 350"#,
+        r#""float lambdamax" 831"#,
+        r#""float lambdamin" 500 "float lambdamax" 500"#,
+    ] {
+        assert_eq!(film(wrong).unwrap_err().errors.len(), 1, "{wrong}");
+    }
+}
+
+#[test]
+fn a_sensor_is_the_observer_and_cameras_are_told_why_not() {
+    let fault = |sensor: &str| {
+        let text = format!("Film \"rgb\" \"string sensor\" \"{sensor}\" WorldBegin Shape \"sphere\"");
+        super::parse(std::path::Path::new("scene.pbrt"), &text).map_err(|e| e.to_string())
+    };
+    assert!(fault("cie1931").is_ok());
+    let canon = fault("canon_eos_5d").unwrap_err();
+    assert!(canon.contains("is not part of tyndall") && canon.contains("may not be passed on"), "{canon}");
+    let misspelt = fault("cie1391").unwrap_err();
+    assert!(misspelt.contains("there is no sensor") && misspelt.contains("cie1931"), "{misspelt}");
 }

@@ -1,13 +1,14 @@
 //! Materials, each by its id.
 
+use tyndall::relief::Rule;
 use tyndall_optics::spectra;
 
 use super::Pen;
 use super::element::Element;
 use crate::build::made::parts;
 use crate::desc::{
-    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, RoughnessDesc, ShadowingKind, Span,
-    Spanned, SpectrumDesc, Varying,
+    ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind,
+    Span, Spanned, SpectrumDesc, Varying,
 };
 use crate::mitsuba::INDICES;
 use crate::write::number::{double, shortest};
@@ -25,7 +26,16 @@ pub(super) fn word(kind: &MaterialKind) -> &'static str {
         MaterialKind::Mix { .. } => "blendbsdf",
         MaterialKind::Mask { .. } => "mask",
         MaterialKind::TwoFaced { .. } => "twosided",
+        MaterialKind::Coated(_) => "coated",
+        MaterialKind::Embossed { map: ReliefMap::Heights { .. }, .. } => "bumpmap",
+        MaterialKind::Embossed { map: ReliefMap::Normals(_), .. } => "normalmap",
     }
+}
+
+/// Whether a material's parts stand inside of it: those of one that is `twosided` as a whole are not so themselves.
+fn says_its_parts(kind: &MaterialKind) -> bool {
+    matches!(kind, MaterialKind::TwoFaced { .. })
+        || matches!(kind, MaterialKind::Embossed { rule: Rule::Mitsuba { mirrored: true, .. }, .. })
 }
 
 impl Pen<'_, '_> {
@@ -36,18 +46,8 @@ impl Pen<'_, '_> {
         for index in 0..desc.materials.len() {
             self.after_its_parts(MaterialId(index as u32), &mut order, 0);
         }
-        order.retain(|id| !self.is_face_only(*id));
+        order.retain(|id| !self.draft.stands_inside(*id, says_its_parts));
         order.into_iter().filter_map(|id| Some(self.bsdf(id, desc.material(id)?))).collect()
-    }
-
-    /// Whether a material is nothing but a face of others, and so stands there.
-    fn is_face_only(&self, id: MaterialId) -> bool {
-        let desc = self.draft.desc;
-        let mut shapes = desc.shapes.iter().chain(desc.groups.iter().flat_map(|group| &group.shapes));
-        let is_face = |kind: &MaterialKind| matches!(kind, MaterialKind::TwoFaced { .. });
-        let is_part = |of: &MaterialDesc| parts(&of.kind).iter().any(|part| part.value == id);
-        let mut wholes = desc.materials.iter().filter(|material| is_part(material)).peekable();
-        wholes.peek().is_some() && wholes.all(|whole| is_face(&whole.kind)) && !shapes.any(|s| s.material.value == id)
     }
 
     fn after_its_parts(&self, id: MaterialId, order: &mut Vec<MaterialId>, depth: u32) {
@@ -73,7 +73,9 @@ impl Pen<'_, '_> {
             material.kind,
             MaterialKind::Diffuse { .. } | MaterialKind::Conductor { .. } | MaterialKind::Plastic { .. }
         );
-        if reflects && material.two_sided {
+        let mirrored =
+            matches!(material.kind, MaterialKind::Embossed { rule: Rule::Mitsuba { mirrored: true, .. }, .. });
+        if reflects && material.two_sided || mirrored {
             return Element::plugin("bsdf", "twosided").with("id", &name).around(inside);
         }
         inside.with("id", &name)
@@ -122,6 +124,11 @@ impl Pen<'_, '_> {
                 self.lacks(span, "the material \"diffusetransmission\"");
                 Element::plugin("bsdf", "diffuse")
             }
+            MaterialKind::Coated(_) => {
+                self.lacks(span, "a base under a coat (pbrt's \"coateddiffuse\" and \"coatedconductor\")");
+                Element::plugin("bsdf", "diffuse")
+            }
+            MaterialKind::Embossed { of, map, rule } => self.relief(of, map, *rule, span),
             MaterialKind::Interface => Element::plugin("bsdf", "null"),
             MaterialKind::Mix { of: [first, second], amount } => {
                 let mut element = Element::plugin("bsdf", "blendbsdf");
@@ -143,6 +150,34 @@ impl Pen<'_, '_> {
                 element
             }
         }
+    }
+
+    fn relief(&mut self, of: &Spanned<MaterialId>, map: &ReliefMap, rule: Rule, span: Span) -> Element {
+        let (mut element, texture) = match map {
+            ReliefMap::Heights { texture, scale } => {
+                let mut element = Element::plugin("bsdf", "bumpmap");
+                element.float_unless("scale", *scale, 1.0);
+                (element, self.varying("arbitrary", texture))
+            }
+            ReliefMap::Normals(texture) => (Element::plugin("bsdf", "normalmap"), self.varying("normalmap", texture)),
+        };
+        element.extend(texture);
+        match rule {
+            Rule::Mitsuba { flips, shadows, mirrored } => {
+                if !flips {
+                    element.boolean("flip_invalid_normals", false);
+                }
+                if !shadows {
+                    element.boolean("use_shadowing_function", false);
+                }
+                element.push(if mirrored { self.face(of) } else { self.material_ref(of.value) });
+            }
+            Rule::Pbrt => {
+                self.draft.differs(span, "Mitsuba has other rules for reliefs that would turn light round");
+                element.push(self.material_ref(of.value));
+            }
+        }
+        element
     }
 
     /// A face of a `twosided` has no `twosided` of its own, and so no id.

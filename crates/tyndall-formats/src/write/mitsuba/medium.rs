@@ -3,7 +3,7 @@
 use super::Pen;
 use super::element::Element;
 use super::spectrum::colour;
-use crate::build::media::{channels, numbers_of};
+use crate::build::media::{channels, numbers_of, per_unit};
 use crate::desc::{Coefficients, MediumDesc, PhaseDesc, SpectrumDesc};
 use crate::write::number::{double, shortest};
 
@@ -24,6 +24,16 @@ impl Pen<'_, '_> {
                     Some((a, s)) => coefficients(&mut element, [a, s]),
                     None => self.lacks(sigma_a.span, "absorption and scattering by wavelength"),
                 }
+            }
+            Coefficients::PerMillimetre { sigma_a, sigma_s } => {
+                let unit = self.draft.desc.options.unit.value;
+                match per_unit(&sigma_a.value, unit).zip(per_unit(&sigma_s.value, unit)) {
+                    Some((a, s)) => coefficients(&mut element, [a, s]),
+                    None => self.lacks(sigma_a.span, "absorption and scattering by wavelength"),
+                }
+            }
+            Coefficients::Reflectance { reflectance, .. } => {
+                self.lacks(reflectance.span, "a medium by the reflectance of its surface");
             }
             Coefficients::Preset { name, reduced } => {
                 match numbers_of(&name.value, *reduced, self.draft.desc.options.unit.value.millimetres()) {

@@ -2,13 +2,13 @@
 
 use glam::{DMat4, DVec3};
 use tyndall::math::{Transform, Vec3};
-use tyndall::shape::{DiskMapping, Mesh, Patch};
+use tyndall::shape::{DiskMapping, Mesh, Patch, SpherePart, Turn};
 
 use super::Pen;
 use super::element::Element;
 use super::emitter::point;
 use super::placed;
-use crate::build::shapes::mesh_of;
+use crate::build::shapes::triangles_of;
 use crate::desc::{FileRef, MediumInterface, PatchDesc, ShapeDesc, ShapeKind};
 use crate::write::place::Place;
 
@@ -57,7 +57,8 @@ impl Pen<'_, '_> {
             let name = self.names.unique(Some(name), "shape");
             element = element.with("id", &name);
         }
-        if shape.reverse_orientation {
+        // The normals of a subdivided mesh are against the winding.
+        if shape.reverse_orientation != matches!(shape.kind, ShapeKind::Subdivision { .. }) {
             element.boolean("flip_normals", true);
         }
         if let Some(priority) = shape.priority {
@@ -116,7 +117,10 @@ impl Pen<'_, '_> {
     /// The geometry and its place.
     fn shape_kind(&mut self, shape: &ShapeDesc) -> Option<Element> {
         Some(match &shape.kind {
-            ShapeKind::Sphere { radius } => {
+            ShapeKind::Sphere { radius, part } => {
+                if *part != SpherePart::WHOLE {
+                    self.lacks(shape.span, "a part of a sphere");
+                }
                 let mut element = Element::plugin("shape", "sphere");
                 // Its v runs the other way.
                 let to_world = shape.to_world * DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
@@ -127,9 +131,26 @@ impl Pen<'_, '_> {
                 element.float_unless("radius", *radius, 1.0);
                 element
             }
-            ShapeKind::Disk { height, radius, inner_radius, mapping } => {
-                if *inner_radius > 0.0 {
-                    self.lacks(shape.span, "a ring");
+            ShapeKind::Cylinder { radius, heights: [low, high], turn } => {
+                if *turn != Turn::FULL {
+                    self.lacks(shape.span, "a part of a cylinder");
+                }
+                let mut element = self.placed_plugin("cylinder", shape.to_world);
+                for (name, z, default) in [("p0", *low, 0.0), ("p1", *high, 1.0)] {
+                    if z != default {
+                        element.push(point(name, DVec3::new(0.0, 0.0, z)));
+                    }
+                }
+                element.float_unless("radius", *radius, 1.0);
+                element
+            }
+            ShapeKind::Subdivision { .. } => {
+                let name = self.draft.mesh(shape)?;
+                self.mesh_file("ply", &name, shape, false)
+            }
+            ShapeKind::Disk { height, radius, inner_radius, turn, mapping } => {
+                if *inner_radius > 0.0 || *turn != Turn::FULL {
+                    self.lacks(shape.span, "a ring, or a part of a disk");
                 }
                 if *mapping == DiskMapping::AzimuthInward {
                     self.draft.differs(shape.span, "texture coordinates of disks run otherwise in Mitsuba");
@@ -141,11 +162,10 @@ impl Pen<'_, '_> {
             ShapeKind::Rectangle => self.placed_plugin("rectangle", shape.to_world),
             ShapeKind::Cube => self.placed_plugin("cube", shape.to_world),
             ShapeKind::TriangleMesh(_) => {
-                let mesh = mesh_of(&shape.kind)?.ok()?;
-                match [("rectangle", ShapeKind::Rectangle), ("cube", ShapeKind::Cube)]
-                    .into_iter()
-                    .find(|(_, known)| mesh_of(known).and_then(Result::ok).is_some_and(|known| is_same(&known, &mesh)))
-                {
+                let mesh = triangles_of(&shape.kind)?.ok()?;
+                match [("rectangle", ShapeKind::Rectangle), ("cube", ShapeKind::Cube)].into_iter().find(|(_, known)| {
+                    triangles_of(known).and_then(Result::ok).is_some_and(|known| is_same(&known, &mesh))
+                }) {
                     Some((word, _)) => self.placed_plugin(word, shape.to_world),
                     None => {
                         let name = self.draft.mesh(shape)?;
@@ -155,7 +175,10 @@ impl Pen<'_, '_> {
             }
             // Each patch is a shape of its own.
             ShapeKind::BilinearMesh(_) => return None,
-            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
+                if let Some(displacement) = displacement {
+                    self.lacks(displacement.height.span, "a mesh whose vertices a texture moves");
+                }
                 let flat = *face_normals || !*smooth_normals && self.draft.has_normals(path) == Some(false);
                 let mut element = self.file("ply", path, shape, flat);
                 if *flip_tex_coords {

@@ -26,6 +26,13 @@ impl Pen<'_, '_> {
                 return Some(self.checkerboard(element, of, mapping, texture.span));
             }
             TextureKind::Checkerboard { board: Board::Cubes { .. }, .. } => "a checkerboard of cubes",
+            TextureKind::Attribute { of_faces, scale } => {
+                let mut element = Element::plugin("texture", "mesh_attribute").with("name", name).with("id", &own_name);
+                element.string("name", if *of_faces { "face_color" } else { "vertex_color" });
+                element.float_unless("scale", *scale, 1.0);
+                self.textures_written.push(id);
+                return Some(element);
+            }
             TextureKind::Plain(inner) => return self.varying(name, inner),
             TextureKind::Scale(_) => "the texture \"scale\"",
             TextureKind::Mix { .. } => "the texture \"mix\"",

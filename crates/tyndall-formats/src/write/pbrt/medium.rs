@@ -22,6 +22,20 @@ impl Pen<'_, '_> {
                     self.coefficient(&mut entity, name, &sigma.value, sigma.span);
                 }
             }
+            Coefficients::PerMillimetre { sigma_a, sigma_s } => {
+                let unit = self.draft.desc.options.unit.value;
+                for (name, sigma) in [("sigma_a", sigma_a), ("sigma_s", sigma_s)] {
+                    match media::per_unit(&sigma.value, unit) {
+                        Some(rgb) => {
+                            self.coefficient(&mut entity, name, &SpectrumDesc::Rgb(rgb.map(as_single)), sigma.span);
+                        }
+                        None => self.lacks(sigma.span, "a medium by wavelength and millimetre"),
+                    }
+                }
+            }
+            Coefficients::Reflectance { reflectance, .. } => {
+                self.lacks(reflectance.span, "a medium by the reflectance of its surface, apart from that surface");
+            }
             Coefficients::ExtinctionAlbedo { sigma_t, albedo } => match media::split(&sigma_t.value, &albedo.value) {
                 Some(sigma) => {
                     // The renderer keeps them in single precision.

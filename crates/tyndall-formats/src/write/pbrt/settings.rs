@@ -5,7 +5,7 @@ use tyndall::feature::Space;
 use super::Pen;
 use super::entity::{Entity, quoted};
 use crate::desc::{CameraKind, FilmDesc, FilterDesc, LengthUnit};
-use crate::pbrt::film::gbuffer_layers;
+use crate::pbrt::layers::in_space;
 use crate::write::number::shortest;
 
 impl Pen<'_, '_> {
@@ -114,7 +114,7 @@ impl Pen<'_, '_> {
     }
 
     fn film(&mut self, film: &FilmDesc) {
-        let space = [Space::Camera, Space::World].into_iter().find(|space| film.layers == gbuffer_layers(*space));
+        let space = [Space::Camera, Space::World].into_iter().find(|space| film.layers == in_space(*space));
         if space.is_none() && !film.layers.is_empty() {
             self.lacks(film.span, "these layers of the film");
         }

@@ -1,13 +1,14 @@
 //! Shapes, objects and their instances.
 
 use glam::DMat4;
-use tyndall::shape::DiskMapping;
+use tyndall::shape::{DiskMapping, Turn};
 
 use super::Pen;
 use super::entity::{Entity, quoted};
-use crate::build::shapes::mesh_of;
+use crate::build::shapes::triangles_of;
 use crate::desc::{MaterialKind, PatchDesc, ShapeDesc, ShapeKind};
 use crate::write::names::{Names, printable};
+use crate::write::number::shortest;
 
 impl Pen<'_, '_> {
     pub(super) fn shapes(&mut self) {
@@ -78,18 +79,33 @@ impl Pen<'_, '_> {
 
     /// pbrt turns the normals of its quadrics round under a mirroring matrix.
     fn is_reversed(&self, shape: &ShapeDesc) -> bool {
-        let quadric = matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. });
+        let quadric =
+            matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. } | ShapeKind::Cylinder { .. });
         shape.reverse_orientation ^ (quadric && shape.to_world.determinant() < 0.0)
     }
 
     fn shape_kind(&mut self, shape: &ShapeDesc) -> Option<Entity> {
         Some(match &shape.kind {
-            ShapeKind::Sphere { radius } => {
+            ShapeKind::Sphere { radius, part } => {
                 let mut entity = Entity::new("Shape", &["sphere"]);
                 entity.float_unless("radius", *radius, 1.0);
+                for ((name, z), whole) in ["zmin", "zmax"].into_iter().zip(part.z).zip([-1.0, 1.0]) {
+                    if z != whole {
+                        entity.float(name, shortest(z * radius, |height| height / radius == z));
+                    }
+                }
+                turned(&mut entity, part.turn);
                 entity
             }
-            ShapeKind::Disk { height, radius, inner_radius, mapping } => {
+            ShapeKind::Cylinder { radius, heights, turn } => {
+                let mut entity = Entity::new("Shape", &["cylinder"]);
+                entity.float_unless("radius", *radius, 1.0);
+                entity.float_unless("zmin", heights[0], -1.0);
+                entity.float_unless("zmax", heights[1], 1.0);
+                turned(&mut entity, *turn);
+                entity
+            }
+            ShapeKind::Disk { height, radius, inner_radius, turn, mapping } => {
                 if *mapping == DiskMapping::OutwardAzimuth {
                     let message = "texture coordinates of disks run otherwise in pbrt";
                     self.draft.differs(shape.span, message);
@@ -98,6 +114,7 @@ impl Pen<'_, '_> {
                 entity.float_unless("height", *height, 0.0);
                 entity.float_unless("radius", *radius, 1.0);
                 entity.float_unless("innerradius", *inner_radius, 0.0);
+                turned(&mut entity, *turn);
                 entity
             }
             ShapeKind::Rectangle => {
@@ -107,7 +124,16 @@ impl Pen<'_, '_> {
             }
             ShapeKind::Cube | ShapeKind::TriangleMesh(_) => self.triangles(shape)?,
             ShapeKind::BilinearMesh(patches) => bilinear(patches),
-            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords } => {
+            ShapeKind::Subdivision { positions, indices, levels } => {
+                let mut entity = Entity::new("Shape", &["loopsubdiv"]);
+                if *levels != 3 {
+                    entity.integer("levels", (*levels).into());
+                }
+                entity.singles("point3", "P", positions.as_flattened());
+                entity.indices("indices", indices.as_flattened());
+                entity
+            }
+            ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let as_it_is = !*flip_tex_coords
                     && self.draft.has_normals(path).is_none_or(
                         |has| {
@@ -118,6 +144,10 @@ impl Pen<'_, '_> {
                     if as_it_is { self.draft.relative(&path.value, path.span) } else { self.draft.mesh(shape)? };
                 let mut entity = Entity::new("Shape", &["plymesh"]);
                 entity.string("filename", &name);
+                if let Some(displacement) = displacement {
+                    self.number(&mut entity, "displacement", &displacement.height, f64::NAN);
+                    entity.float_unless("edgelength", displacement.edge_length, 1.0);
+                }
                 entity
             }
             ShapeKind::Obj { .. } | ShapeKind::Serialized { .. } => {
@@ -131,7 +161,7 @@ impl Pen<'_, '_> {
 
     /// Triangles in words.
     fn triangles(&mut self, shape: &ShapeDesc) -> Option<Entity> {
-        let mesh = mesh_of(&shape.kind)?.ok()?;
+        let mesh = triangles_of(&shape.kind)?.ok()?;
         let flat = |points: &[tyndall::math::Vec3]| points.iter().flat_map(|p| p.to_array()).collect::<Vec<_>>();
         let mut entity = Entity::new("Shape", &["trianglemesh"]);
         entity.singles("point3", "P", &flat(&mesh.positions));
@@ -139,6 +169,13 @@ impl Pen<'_, '_> {
         entity.singles("normal", "N", &flat(&mesh.normals));
         entity.singles("point2", "uv", &mesh.uvs.iter().flat_map(|uv| uv.to_array()).collect::<Vec<_>>());
         Some(entity)
+    }
+}
+
+/// How far round a quadric goes.
+fn turned(entity: &mut Entity, turn: Turn) {
+    if turn != Turn::FULL {
+        entity.float("phimax", shortest(360.0 * turn.turns(), |angle| Turn::degrees(angle) == turn));
     }
 }
 

@@ -29,10 +29,10 @@ impl Pen<'_, '_> {
     }
 
     /// An index of refraction: a number, or a spectrum.
-    pub(super) fn index(&mut self, entity: &mut Entity, eta: &Spanned<SpectrumDesc>) {
+    pub(super) fn index(&mut self, entity: &mut Entity, name: &str, eta: &Spanned<SpectrumDesc>) {
         match &eta.value {
-            SpectrumDesc::Constant(v) => entity.float_unless("eta", *v, 1.5),
-            other => self.spectrum(entity, "eta", other, eta.span),
+            SpectrumDesc::Constant(v) => entity.float_unless(name, *v, 1.5),
+            other => self.spectrum(entity, name, other, eta.span),
         }
     }
 

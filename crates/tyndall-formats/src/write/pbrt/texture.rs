@@ -131,6 +131,10 @@ impl Pen<'_, '_> {
                 space = self.image(&mut entity, image, texture.span);
                 entity
             }
+            TextureKind::Attribute { .. } => {
+                self.lacks(texture.span, "colours of a mesh itself");
+                start("constant")
+            }
             TextureKind::Fbm(noise) => turbulence(start("fbm"), noise, &mut space),
             TextureKind::Wrinkled(noise) => turbulence(start("wrinkled"), noise, &mut space),
             TextureKind::Windy { from_world } => {

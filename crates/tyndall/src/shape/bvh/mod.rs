@@ -17,6 +17,8 @@
 
 pub(super) mod between;
 pub(super) mod build;
+mod collapse;
+mod divide;
 mod prefetch;
 pub(super) mod traverse;
 pub(super) mod triangle;
