@@ -143,8 +143,12 @@ impl<'a> Builder<'a> {
                 vec![gathered.builder.add_disk(disk, &transform, reversed)]
             }
             ShapeKind::Cylinder { radius, heights, turn } => {
-                let cylinder = Cylinder::new(*radius as f32, heights.map(|z| z as f32), *turn);
-                vec![builder.add_cylinder(cylinder, &transform, reversed)]
+                // From 0 upwards: it is the same whether a number or a matrix says where it begins.
+                let [low, high] = *heights;
+                let cylinder = Cylinder::new(*radius as f32, [0.0, (high - low) as f32], *turn);
+                let up = DMat4::from_translation(DVec3::new(0.0, 0.0, low));
+                let transform = self.transform(desc.to_world * up, desc.span)?;
+                vec![gathered.builder.add_cylinder(cylinder, &transform, reversed)]
             }
             ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],
             ShapeKind::Cube => vec![builder.add_mesh(cube(), &transform, reversed)],

@@ -135,11 +135,10 @@ impl Pen<'_, '_> {
                 if *turn != Turn::FULL {
                     self.lacks(shape.span, "a part of a cylinder");
                 }
-                let mut element = self.placed_plugin("cylinder", shape.to_world);
-                for (name, z, default) in [("p0", *low, 0.0), ("p1", *high, 1.0)] {
-                    if z != default {
-                        element.push(point(name, DVec3::new(0.0, 0.0, z)));
-                    }
+                let up = DMat4::from_translation(DVec3::new(0.0, 0.0, *low));
+                let mut element = self.placed_plugin("cylinder", shape.to_world * up);
+                if high - low != 1.0 {
+                    element.push(point("p1", DVec3::new(0.0, 0.0, high - low)));
                 }
                 element.float_unless("radius", *radius, 1.0);
                 element

@@ -20,12 +20,7 @@ impl Pen<'_, '_> {
     pub(super) fn camera(&mut self) {
         let camera = &self.draft.desc.camera;
         if let Some(medium) = camera.medium {
-            // What stands here holds for shapes too that say nothing.
-            self.interface(Some(medium.value), Some(medium.value));
-            if self.draft.desc.shapes.iter().any(|shape| shape.interface.is_none()) && self.draft.desc.media.len() > 1 {
-                let message = "in pbrt, surfaces that name no medium have the camera's on both sides";
-                self.draft.differs(medium.span, message);
-            }
+            self.interface(None, Some(medium.value));
         }
         let width = self.view(camera);
         let entity = match &camera.kind {

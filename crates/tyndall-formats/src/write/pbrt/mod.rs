@@ -48,7 +48,9 @@ pub(super) fn scene(draft: &mut Draft<'_>) -> String {
     });
     // What the others refer to is known now.
     let textures = pen.all_textures();
-    let parts = [settings, "WorldBegin\n".into(), media, textures, materials, world];
+    // What is said of the camera's medium would hold for the world too.
+    let begin = if desc.camera.medium.is_some() { "WorldBegin\nMediumInterface \"\" \"\"" } else { "WorldBegin" };
+    let parts = [settings, begin.into(), media, textures, materials, world];
     let parts: Vec<_> = parts.iter().map(|part| part.trim_end()).filter(|part| !part.is_empty()).collect();
     parts.join("\n\n") + "\n"
 }
