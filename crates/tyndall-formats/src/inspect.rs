@@ -113,8 +113,11 @@ fn largest_body(scene: &Scene, medium: tyndall::medium::MediumId) -> f32 {
 /// Lights without size, where a medium can be reached through polished boundaries only: no path and no light sample finds
 /// the way.
 fn lights_behind_glass(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneError>) {
-    let has_no_size =
-        |kind: &LightKind| matches!(kind, LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Distant { .. });
+    let has_no_size = |kind: &LightKind| match kind {
+        LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Distant { .. } => true,
+        LightKind::Goniometric { .. } | LightKind::Projector { .. } => true,
+        LightKind::Constant { .. } | LightKind::Environment { .. } | LightKind::Portal { .. } => false,
+    };
     let Some(light) = desc.lights.iter().find(|light| has_no_size(&light.kind)) else { return };
     for (index, words) in desc.media.iter().enumerate() {
         let id = MediumId(index as u32);

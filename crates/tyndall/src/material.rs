@@ -196,7 +196,7 @@ impl Material {
     #[inline]
     pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
         match self {
-            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(at, wavelengths)).on(*sides),
+            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(share(reflectance, at, wavelengths)).on(*sides),
             Self::Conductor { metal, alpha, tint, sides } => {
                 let [x, y] = alpha.at(at);
                 let [eta, k] = metal.index(at, wavelengths);
@@ -213,7 +213,7 @@ impl Material {
                 Bsdf::diffuse_transmission(scaled(reflectance), scaled(transmittance))
             }
             Self::Plastic { eta, internal, reflectance, nonlinear, tint, sides } => {
-                Bsdf::Plastic(Plastic::new(*eta, *internal, reflectance.eval(at, wavelengths), *nonlinear))
+                Bsdf::Plastic(Plastic::new(*eta, *internal, share(reflectance, at, wavelengths), *nonlinear))
                     .tinted(tint.eval(at, wavelengths), Lanes::ONE)
                     .on(*sides)
             }
@@ -253,6 +253,12 @@ impl Material {
             _ => false,
         }
     }
+}
+
+/// What a texture reflects, held in 0 to 1: textures that are scaled can have more.
+#[inline]
+fn share(texture: &Texture, at: &TexturePoint, wavelengths: &Wavelengths) -> Lanes {
+    texture.eval(at, wavelengths).clamp(0.0, 1.0)
 }
 
 impl Index {

@@ -1,6 +1,7 @@
 //! From what the user wrote to what is rendered: reads meshes and images, converts units, checks the physics.
 
 mod camera;
+mod emitters;
 mod lights;
 pub(crate) mod made;
 mod materials;

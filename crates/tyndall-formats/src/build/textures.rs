@@ -59,7 +59,10 @@ impl Builder<'_> {
     fn texture_kind(&mut self, kind: &TextureKind, measure: Measure, span: Span) -> Option<Texture> {
         Some(match kind {
             TextureKind::Plain(value) => self.texture(value, measure)?,
-            TextureKind::Scale(of) => Texture::Scale(self.textures_of(of, measure)?),
+            // What is scaled to more than a share is cut where it is used, as in pbrt.
+            TextureKind::Scale([of, by]) => {
+                Texture::Scale(Arc::new([self.texture(of, measure)?, self.texture(by, Measure::Number)?]))
+            }
             TextureKind::Mix { of, amount } => Texture::Mix {
                 of: self.textures_of(of, measure)?,
                 by: Arc::new(Weight::Texture(self.texture(amount, Measure::Share)?)),
@@ -173,6 +176,20 @@ impl Builder<'_> {
             least: if measure == Measure::Number { f32::MIN } else { 0.0 },
             most: most(measure),
         })
+    }
+
+    /// Columns and rows of a picture; 1 × 1 for what is none.
+    pub(super) fn picture_size(&mut self, texture: Option<&Spanned<Varying>>) -> [u32; 2] {
+        let scene = self.desc;
+        let kind = match texture.map(|texture| &texture.value) {
+            Some(Varying::Texture(id)) => scene.texture(*id).map(|desc| &desc.kind),
+            _ => None,
+        };
+        let picture = match kind {
+            Some(TextureKind::Image(image)) => self.picture(image),
+            _ => None,
+        };
+        picture.map_or([1, 1], |picture| [picture.width, picture.height])
     }
 
     fn picture(&mut self, desc: &ImageDesc) -> Option<Arc<Picture>> {

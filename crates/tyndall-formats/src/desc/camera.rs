@@ -6,7 +6,7 @@ use tyndall::{
     spectrum::ColorMode,
 };
 
-use super::{FileRef, MediumId, Span, Spanned};
+use super::{FileRef, MediumId, ShapeDesc, Span, Spanned};
 
 /// A camera.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +52,24 @@ pub enum CameraKind {
     },
     /// The light of one ray along +z.
     RadianceMeter,
+    /// The light of parallel rays along +z from outside of the scene, to a target.
+    Distant {
+        /// Where they go.
+        target: DistantTarget,
+    },
     /// Several cameras side by side, left to right, each as wide as the others.
     Batch(Vec<CameraDesc>),
+}
+
+/// Where parallel rays go.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DistantTarget {
+    /// To the disk that the sphere around the box of the scene shows them.
+    Scene,
+    /// To a point in the world.
+    Point([f64; 3]),
+    /// To all points of a shape alike; it need not be part of the scene.
+    Shape(Box<ShapeDesc>),
 }
 
 /// A thin lens.
@@ -185,7 +201,8 @@ impl FrameDesc {
         Self { axis, aspect: None, screen_window: None }
     }
 
-    fn window(&self, half: f64, width: u32, height: u32) -> ImageWindow {
+    /// What a picture of `width` × `height` sees of a plane in which half of its reference side is `half`.
+    pub(crate) fn window(&self, half: f64, width: u32, height: u32) -> ImageWindow {
         if let Some(Spanned { value: [left, right, bottom, top], .. }) = self.screen_window {
             return ImageWindow { left: left * half, right: right * half, bottom: bottom * half, top: top * half };
         }

@@ -31,10 +31,12 @@ mod uses;
 use std::path::PathBuf;
 
 pub use camera::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FovAxis, FrameDesc, ImageWindow,
-    RealisticDesc, SphereMapping, ThinLensDesc,
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc,
+    ImageWindow, RealisticDesc, SphereMapping, ThinLensDesc,
 };
-pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
+pub use light::{
+    AreaLightDesc, EmissionDesc, EnvironmentMapping, Evenness, LightDesc, LightKind, Magnitude, SpotFalloff, Spread,
+};
 pub use material::{
     BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc,
     ShadowingKind,
@@ -125,7 +127,8 @@ impl SceneDesc {
             _ => None,
         });
         let skies = self.lights.iter().filter_map(|light| match &light.kind {
-            LightKind::Environment { path, .. } => Some(path),
+            LightKind::Environment { path, .. } | LightKind::Goniometric { path, .. } => Some(path),
+            LightKind::Portal { path, .. } => path.as_ref(),
             _ => None,
         });
         meshes.chain(pictures).chain(skies).chain(self.camera.files()).map(|file| &file.value)

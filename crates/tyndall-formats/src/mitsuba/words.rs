@@ -43,8 +43,8 @@ const PLUGINS: &[Plugins] = &[
     },
     Plugins {
         tag: "emitter",
-        known: &["area", "constant", "envmap", "point", "spot", "directional"],
-        later: &["directionalarea", "projector", "sunsky", "timed_sunsky"],
+        known: &["area", "constant", "directional", "directionalarea", "envmap", "point", "projector", "spot"],
+        later: &["sunsky", "timed_sunsky"],
     },
     Plugins { tag: "film", known: &["hdrfilm"], later: &["specfilm"] },
     Plugins {
@@ -76,8 +76,8 @@ const PLUGINS: &[Plugins] = &[
     },
     Plugins {
         tag: "sensor",
-        known: &["perspective", "thinlens", "orthographic", "irradiancemeter", "radiancemeter", "batch"],
-        later: &["distant"],
+        known: &["perspective", "thinlens", "orthographic", "irradiancemeter", "radiancemeter", "distant", "batch"],
+        later: &[],
     },
     Plugins {
         tag: "shape",

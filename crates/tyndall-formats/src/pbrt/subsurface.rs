@@ -10,7 +10,7 @@
 use std::collections::HashMap;
 
 use super::Reader;
-use super::materials::{ROUGHNESS, roughness};
+use super::materials::rough;
 use super::params::Params;
 use crate::desc::{
     Coefficients, MaterialDesc, MaterialId, MaterialKind, MediumDesc, MediumId, MediumInterface, PhaseDesc, ShapeDesc,
@@ -79,7 +79,7 @@ impl Reader {
         self.fillings.latest = Some(MediumId(self.media.push(span, medium)));
         MaterialKind::Dielectric {
             eta: eta.map(SpectrumDesc::Constant),
-            roughness: roughness(p, &self.textures, ROUGHNESS),
+            roughness: rough(p, &self.textures),
             reflection_tint: None,
             transmission_tint: None,
         }

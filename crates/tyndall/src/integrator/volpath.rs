@@ -145,7 +145,7 @@ impl Path {
     fn find_environment(&self, scene: &Scene, sink: &mut impl Sink) {
         for id in &scene.lights.environments {
             let light = scene.lights.get(*id);
-            let le = light.le_from_infinity(self.ray.dir, &self.wavelengths);
+            let le = light.le_from_infinity(self.last_vertex.p, self.ray.dir, &self.wavelengths);
             if !le.is_zero() {
                 let weight = self.weights.emission(|| {
                     scene.lights.probability(&self.last_vertex, *id)
@@ -160,7 +160,7 @@ impl Path {
     #[inline]
     fn find_emitter(&self, scene: &Scene, hit: &Interaction, sink: &mut impl Sink) {
         let Some((id, light)) = scene.light_at(hit) else { return };
-        let le = light.le(hit.ng, -self.ray.dir, &self.wavelengths);
+        let le = light.le(hit.ng, -self.ray.dir, || hit.into(), &self.wavelengths);
         if !le.is_zero() {
             let weight = self.weights.emission(|| {
                 scene.lights.probability(&self.last_vertex, id) * light.pdf(&self.last_vertex, hit.p, hit.ng)

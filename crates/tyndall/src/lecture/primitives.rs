@@ -95,9 +95,19 @@ pub(super) struct Point {
 #[derive(Debug, Clone, Copy)]
 enum Place {
     Eye(Vec3),
-    Surface { hit: Interaction, bsdf: Bsdf, relief: Option<MaterialId>, from_outside: bool, beyond: Record },
-    Collision { p: Vec3, phase: Phase },
-    Infinity,
+    Surface {
+        hit: Interaction,
+        bsdf: Bsdf,
+        relief: Option<MaterialId>,
+        from_outside: bool,
+        beyond: Record,
+    },
+    Collision {
+        p: Vec3,
+        phase: Phase,
+    },
+    /// Seen from a point.
+    Infinity(Vec3),
 }
 
 impl Point {
@@ -130,7 +140,7 @@ impl Point {
         match self.place {
             Place::Surface { hit, bsdf, relief, .. } => Some(Vertex::met(scene, hit, bsdf, -omega, relief)),
             Place::Collision { p, phase } => Some(Vertex::Medium { p, dir: omega, phase }),
-            Place::Eye(_) | Place::Infinity => None,
+            Place::Eye(_) | Place::Infinity(_) => None,
         }
     }
 
@@ -212,11 +222,12 @@ impl<'a> World<'a> {
         self.depth += 1;
         self.tally.rays += 1;
         let (mut ray, within) = self.leave(x, omega);
+        let from = ray.origin;
         let inside = self.inside(within);
         let mut gone = 0.0;
         loop {
             let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
-                return Some(Point { place: Place::Infinity, within, inside, distance: f32::INFINITY });
+                return Some(Point { place: Place::Infinity(from), within, inside, distance: f32::INFINITY });
             };
             // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
             let distance = gone + hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
@@ -270,7 +281,7 @@ impl<'a> World<'a> {
                 (hit.spawn(omega), if crossed { *beyond } else { x.within })
             }
             Place::Eye(p) | Place::Collision { p, .. } => (Ray::new(*p, omega), x.within),
-            Place::Infinity => (Ray::new(Vec3::INFINITY, omega), x.within),
+            Place::Infinity(_) => (Ray::new(Vec3::INFINITY, omega), x.within),
         }
     }
 
@@ -294,7 +305,7 @@ impl<'a> World<'a> {
             }
             _ => {
                 self.tally.leaks += 1;
-                Point { place: Place::Infinity, within: y.within, inside: Inside::Vacuum, distance: s }
+                Point { place: Place::Infinity(p), within: y.within, inside: Inside::Vacuum, distance: s }
             }
         }
     }
@@ -315,12 +326,13 @@ impl<'a> World<'a> {
     /// `emittedRadiance(y, ω)`: of the luminaire at `y`, or of the environment at infinity.
     pub(super) fn emitted_radiance(&self, y: &Point, omega: Vec3) -> Radiance {
         let le = match &y.place {
-            Place::Surface { hit, .. } => {
-                self.scene.light_at(hit).map_or(0.0, |(_, l)| l.le(hit.ng, omega, &self.wavelengths).lane(self.lane))
-            }
-            Place::Infinity => {
+            Place::Surface { hit, .. } => self
+                .scene
+                .light_at(hit)
+                .map_or(0.0, |(_, l)| l.le(hit.ng, omega, || hit.into(), &self.wavelengths).lane(self.lane)),
+            Place::Infinity(from) => {
                 let lights = &self.scene.lights;
-                let sky = |id| lights.get(id).le_from_infinity(-omega, &self.wavelengths).lane(self.lane);
+                let sky = |id| lights.get(id).le_from_infinity(*from, -omega, &self.wavelengths).lane(self.lane);
                 lights.environments.iter().copied().map(sky).sum()
             }
             Place::Eye(_) | Place::Collision { .. } => 0.0,

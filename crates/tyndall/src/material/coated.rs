@@ -1,9 +1,9 @@
 //! A base under a coat, as the scene has it.
 
-use super::{Index, Metal, Roughness};
+use super::{Index, Metal, Roughness, share};
 use crate::{
     bsdf::{Base, Bsdf, Coated},
-    spectrum::{Lanes, Wavelengths},
+    spectrum::Wavelengths,
     texture::{Texture, TexturePoint},
 };
 
@@ -76,8 +76,4 @@ impl CoatedBase {
             }
         }
     }
-}
-
-fn share(texture: &Texture, at: &TexturePoint, wavelengths: &Wavelengths) -> Lanes {
-    texture.eval(at, wavelengths).map(|v| v.clamp(0.0, 1.0))
 }

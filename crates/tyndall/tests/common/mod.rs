@@ -235,6 +235,14 @@ impl World {
         self.shine(EmitterShape::Disk { centre: Vec3::Y * y, ng: -Vec3::Y, radius, inner: 0.0 }, le);
     }
 
+    /// A mesh that is one light.
+    pub(crate) fn shining_mesh(&mut self, mesh: Mesh, material: Material, light: AreaLight) {
+        self.object(material, None);
+        self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
+        self.objects.last_mut().unwrap().emission = Emission::Whole(LightId(self.lights.len() as u32));
+        self.lights.push(Light::Area(light));
+    }
+
     fn shine(&mut self, shape: EmitterShape, le: f32) {
         let id = LightId(self.lights.len() as u32);
         self.objects.last_mut().unwrap().emission = Emission::Whole(id);
@@ -244,6 +252,7 @@ impl World {
             luminance: le,
             two_sided: false,
             opacity: 1.0,
+            pattern: None,
         }));
     }
 

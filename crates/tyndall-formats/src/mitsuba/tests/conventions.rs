@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
+use tyndall::shape::Turn;
 
 use super::*;
 use crate::desc::{
@@ -172,6 +173,17 @@ fn shapes_keep_their_files_and_sides() {
     );
     assert_eq!(sphere.to_world.transform_point3(DVec3::ZERO), DVec3::new(2.0, 4.0, 6.0));
     assert_eq!((sphere.kind, sphere.reverse_orientation), (ShapeKind::sphere(4.0), true));
+    // From its own z axis to that between the two points; azimuth 0 where Duff's frame has it: at +x for +z.
+    let cylinder = shape(
+        "<shape type=\"cylinder\"><point name=\"p0\" x=\"1\" y=\"2\" z=\"3\"/><point name=\"p1\" x=\"1\" y=\"4\" z=\"3\"/>\
+         <float name=\"radius\" value=\"0.5\"/></shape>",
+    );
+    assert_eq!(cylinder.kind, ShapeKind::Cylinder { radius: 0.5, heights: [0.0, 2.0], turn: Turn::FULL });
+    let to_world = |p| cylinder.to_world.transform_point3(p);
+    assert_eq!(
+        [to_world(DVec3::ZERO), to_world(DVec3::Z * 2.0)],
+        [DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 4.0, 3.0)]
+    );
     let ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } =
         shape("<shape type=\"obj\"><string name=\"filename\" value=\"meshes/bunny.obj\"/></shape>").kind
     else {

@@ -278,7 +278,7 @@ fn a_batch_has_sensors_that_share_its_film() {
         let text = format!("<scene version=\"3.0.0\"><sensor type=\"batch\">{inside}</sensor></scene>");
         parse(Path::new("a.xml"), &text, &[]).map(|_| ()).unwrap_err().to_string()
     };
-    for inside in ["", "<sensor type=\"distant\"/>", "<sensor type=\"batch\"/>"] {
+    for inside in ["", "<sensor type=\"telescope\"/>", "<sensor type=\"batch\"/>"] {
         assert!(faults(inside).contains("the batch has no <sensor> that can be used"), "{inside}");
     }
     let five = "<sensor type=\"perspective\"/>".repeat(5);

@@ -74,7 +74,7 @@ fn rough_glass_without_a_distribution_is_beckmanns() {
 #[test]
 fn the_spot_shines_down_on_the_cube_and_fades_linearly_in_the_angle() {
     let s = loaded("a2_marble_cube_spot.xml");
-    let LightKind::Spot { intensity, cutoff, beam, falloff } = &s.lights[0].kind else { panic!() };
+    let LightKind::Spot { intensity, cutoff, beam, falloff, .. } = &s.lights[0].kind else { panic!() };
     assert_eq!(intensity.spectrum.value, SpectrumDesc::Rgb([100_000.0; 3]));
     assert_eq!((*cutoff, *beam, *falloff), (3.0, 2.25, SpotFalloff::LinearAngle));
     assert_eq!(s.lights[0].to_world.transform_point3(DVec3::ZERO), DVec3::new(0.0, 0.0, 60.0));

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
-use tyndall::shape::{DiskMapping, Turn};
+use tyndall::shape::{DiskMapping, SpherePart, Turn};
 
 use super::{parse, scene, world};
 use crate::desc::{
     ApertureDesc, CameraKind, Coefficients, ConductorOptics, CropDesc, EnvironmentMapping, FilterDesc, FovAxis,
     LengthUnit, LightKind, Magnitude, MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc, SphereMapping,
-    Varying,
+    TextureId, Varying,
 };
 use crate::error::Unsupported;
 use crate::load;
@@ -81,7 +81,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
         assert_eq!(light.to_world.transform_vector3(DVec3::Z), DVec3::Z);
     }
     assert!(matches!(constant.kind, LightKind::Constant { .. }));
-    let LightKind::Environment { path, scale, mapping } = &sky.kind else { panic!() };
+    let LightKind::Environment { path, scale, mapping, .. } = &sky.kind else { panic!() };
     assert_eq!((path.value.to_str(), *scale), (Some("sky.exr"), 2.0));
     assert_eq!(*mapping, EnvironmentMapping::EqualAreaOctahedral);
 }
@@ -355,6 +355,27 @@ fn a_gbuffer_has_the_layers_of_pbrt() {
     let wanted = ["Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"];
     assert_eq!(names[..9], wanted);
     assert_eq!(names[9..], ["Ns.X", "Ns.Y", "Ns.Z", "u", "v"]);
+}
+
+/// Bounds may come in any order and reach beyond; a mirroring matrix turns quadrics inside out, as in pbrt.
+#[test]
+fn parts_of_quadrics_are_what_their_bounds_say() {
+    let desc = world(
+        r#"Shape "sphere" "float radius" 2 "float zmin" 1 "float zmax" -9 "float phimax" 90
+        Shape "cylinder" "float zmin" 3 "float zmax" -1 Scale -1 1 1 Shape "cylinder" "float radius" 0.5
+        Shape "disk" "float phimax" 270
+        Shape "loopsubdiv" "integer levels" 2 "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "integer indices" [ 0 1 2 ]
+        Texture "h" "float" "constant" Shape "plymesh" "string filename" "a.ply" "texture displacement" "h""#,
+    );
+    let part = SpherePart::new(2.0, [-2.0, 1.0], Turn::degrees(90.0));
+    assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 2.0, part });
+    let cylinder = |radius, heights| ShapeKind::Cylinder { radius, heights, turn: Turn::FULL };
+    assert_eq!((&desc.shapes[1].kind, desc.shapes[1].reverse_orientation), (&cylinder(1.0, [-1.0, 3.0]), false));
+    assert_eq!((&desc.shapes[2].kind, desc.shapes[2].reverse_orientation), (&cylinder(0.5, [-1.0, 1.0]), true));
+    assert!(matches!(desc.shapes[3].kind, ShapeKind::Disk { turn, .. } if turn == Turn::degrees(270.0)));
+    assert!(matches!(&desc.shapes[4].kind, ShapeKind::Subdivision { levels: 2, indices, .. } if indices.len() == 1));
+    let ShapeKind::Ply { displacement: Some(displacement), .. } = &desc.shapes[5].kind else { panic!() };
+    assert_eq!((displacement.edge_length, displacement.height.value.clone()), (1.0, Varying::Texture(TextureId(0))));
 }
 
 /// 470 nm in 16 bands of 29.375 nm, called by their middles; the render must have wavelengths.

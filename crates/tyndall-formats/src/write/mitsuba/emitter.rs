@@ -5,7 +5,11 @@ use glam::{DMat4, DVec3};
 use super::Pen;
 use super::element::Element;
 use super::placed;
-use crate::desc::{AreaLightDesc, EnvironmentMapping, LightDesc, LightKind, SpotFalloff};
+use super::sensor::field_of_view;
+use crate::desc::{
+    AreaLightDesc, EmissionDesc, EnvironmentMapping, Evenness, LightDesc, LightKind, Spanned, SpectrumDesc,
+    SpotFalloff, Spread, Varying,
+};
 use crate::mitsuba::facing;
 use crate::write::place::target;
 
@@ -21,9 +25,13 @@ impl Pen<'_, '_> {
                 element.extend(self.light_spectrum("intensity", intensity));
                 element
             }
-            LightKind::Spot { intensity, cutoff, beam, falloff } => {
+            LightKind::Spot { intensity, cutoff, beam, falloff, slide } => {
                 let mut element = Element::plugin("emitter", "spot");
-                element.extend(aimed(light.to_world));
+                // Without a picture in front of it a spot looks the same however it is turned.
+                element.extend(if slide.is_some() { placed(light.to_world) } else { aimed(light.to_world) });
+                if let Some(slide) = slide {
+                    element.extend(self.varying("texture", slide));
+                }
                 element.extend(self.light_spectrum("intensity", intensity));
                 element.float_unless("cutoff_angle", *cutoff, 20.0);
                 element.float_unless("beam_width", *beam, 0.75 * cutoff);
@@ -45,7 +53,10 @@ impl Pen<'_, '_> {
                 element.extend(self.light_spectrum("radiance", radiance));
                 element
             }
-            LightKind::Environment { path, scale, mapping } => {
+            LightKind::Environment { path, scale, illuminance, mapping } => {
+                if illuminance.is_some() {
+                    self.lacks(light.span, "a light by its illuminance");
+                }
                 if *mapping == EnvironmentMapping::EqualAreaOctahedral {
                     self.lacks(light.span, "an environment on an equal-area square");
                     return None;
@@ -56,6 +67,31 @@ impl Pen<'_, '_> {
                 element.string("filename", &file);
                 element.float_unless("scale", *scale, 1.0);
                 element
+            }
+            LightKind::Projector { emission, slide, fov, axis, power, even } => {
+                if *even != Evenness::Irradiance || power.is_some() {
+                    self.lacks(light.span, "pbrt's projector, whose intensity is even");
+                    return None;
+                }
+                let mut element = Element::plugin("emitter", "projector");
+                // Its picture has x to the left and v downwards.
+                element.extend(placed(light.to_world * DMat4::from_scale(DVec3::new(-1.0, -1.0, 1.0))));
+                element.extend(self.patterned(
+                    "irradiance",
+                    &EmissionDesc { scale: 1.0, ..emission.clone() },
+                    slide.as_ref(),
+                ));
+                element.float_unless("scale", emission.scale, 1.0);
+                element.extend(field_of_view(fov.value, *axis));
+                element
+            }
+            LightKind::Goniometric { .. } => {
+                self.lacks(light.span, "a point that shines by a picture of directions");
+                return None;
+            }
+            LightKind::Portal { .. } => {
+                self.lacks(light.span, "a sky behind a portal");
+                return None;
             }
         };
         if let Some(medium) = light.medium {
@@ -68,9 +104,25 @@ impl Pen<'_, '_> {
         if light.two_sided {
             self.lacks(light.span, "a surface that shines on both sides");
         }
-        let mut element = Element::plugin("emitter", "area");
-        element.extend(self.light_spectrum("radiance", &light.radiance));
+        if light.power.is_some() {
+            self.lacks(light.span, "a light by its power");
+        }
+        let word = match light.spread {
+            Spread::Diffuse => "area",
+            Spread::Straight => "directionalarea",
+        };
+        let mut element = Element::plugin("emitter", word);
+        element.extend(self.patterned("radiance", &light.radiance, light.pattern.as_ref()));
         element
+    }
+
+    /// Light, or a texture of it: white light times the texture.
+    fn patterned(&mut self, name: &str, light: &EmissionDesc, pattern: Option<&Spanned<Varying>>) -> Option<Element> {
+        let Some(pattern) = pattern else { return self.light_spectrum(name, light) };
+        if light.spectrum.value != SpectrumDesc::Rgb([1.0; 3]) || light.scale != 1.0 {
+            self.lacks(light.spectrum.span, "a factor on a texture of light");
+        }
+        self.varying(name, pattern)
     }
 }
 

@@ -2,8 +2,11 @@
 
 use super::Pen;
 use super::element::Element;
+use super::emitter::point;
 use super::placed;
-use crate::desc::{CameraDesc, CameraKind, FilmDesc, FilterDesc, FovAxis, FrameDesc, Spanned, ThinLensDesc};
+use crate::desc::{
+    CameraDesc, CameraKind, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc, Spanned, ThinLensDesc,
+};
 use crate::mitsuba::layer_word;
 use crate::write::number::double;
 use glam::{DMat4, DVec3};
@@ -73,6 +76,16 @@ impl Pen<'_, '_> {
                 element.extend(placed(to_world));
                 element
             }
+            CameraKind::Distant { target } => {
+                let mut element = Element::plugin("sensor", "distant");
+                element.extend(placed(to_world));
+                match target {
+                    DistantTarget::Scene => {}
+                    DistantTarget::Point(p) => element.push(point("target", DVec3::from_array(*p))),
+                    DistantTarget::Shape(shape) => element.extend(self.target(shape)),
+                }
+                element
+            }
             CameraKind::IrradianceMeter { .. } => Element::plugin("sensor", "irradiancemeter"),
             CameraKind::Batch(cameras) => {
                 let mut element = Element::plugin("sensor", "batch");
@@ -104,14 +117,7 @@ impl Pen<'_, '_> {
         lens: Option<ThinLensDesc>,
     ) -> Element {
         let mut element = Element::plugin("sensor", if lens.is_some() { "thinlens" } else { "perspective" });
-        element.float("fov", fov.value);
-        match frame.axis {
-            FovAxis::X => {}
-            FovAxis::Y => element.string("fov_axis", "y"),
-            FovAxis::Smaller => element.string("fov_axis", "smaller"),
-            FovAxis::Larger => element.string("fov_axis", "larger"),
-            FovAxis::Diagonal => element.string("fov_axis", "diagonal"),
-        }
+        element.extend(field_of_view(fov.value, frame.axis));
         self.whole_window(camera, frame);
         if let Some(lens) = lens {
             element.float("aperture_radius", lens.radius);
@@ -239,4 +245,17 @@ impl Pen<'_, '_> {
         }
         element
     }
+}
+
+/// A field of view, and the side that it spans if it is not the width.
+pub(super) fn field_of_view(fov: f64, axis: FovAxis) -> impl Iterator<Item = Element> {
+    let axis = match axis {
+        FovAxis::X => None,
+        FovAxis::Y => Some("y"),
+        FovAxis::Smaller => Some("smaller"),
+        FovAxis::Larger => Some("larger"),
+        FovAxis::Diagonal => Some("diagonal"),
+    };
+    let fov = Element::parameter("float", "fov", &double(fov));
+    std::iter::once(fov).chain(axis.map(|axis| Element::parameter("string", "fov_axis", axis)))
 }

@@ -102,6 +102,15 @@ impl Pen<'_, '_> {
         elements
     }
 
+    /// The geometry of a shape that a sensor looks at, which need not be part of the scene.
+    pub(super) fn target(&mut self, shape: &ShapeDesc) -> Option<Element> {
+        let mut element = self.shape_kind(shape)?.with("name", "target");
+        if shape.reverse_orientation {
+            element.boolean("flip_normals", true);
+        }
+        Some(element)
+    }
+
     fn interface(&mut self, element: &mut Element, interface: &MediumInterface) {
         for (name, medium) in [("interior", interface.inside), ("exterior", interface.outside)] {
             if let Some(medium) = medium {

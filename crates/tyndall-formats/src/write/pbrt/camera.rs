@@ -35,6 +35,7 @@ impl Pen<'_, '_> {
             }
             CameraKind::Realistic(realistic) => self.realistic(realistic),
             CameraKind::IrradianceMeter { .. } => return self.lacks(camera.span, "the sensor \"irradiancemeter\""),
+            CameraKind::Distant { .. } => return self.lacks(camera.span, "the sensor \"distant\""),
             CameraKind::RadianceMeter => return self.lacks(camera.span, "the sensor \"radiancemeter\""),
             CameraKind::Batch(_) => return self.lacks(camera.span, "several sensors in one image"),
         };

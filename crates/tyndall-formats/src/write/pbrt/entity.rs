@@ -42,6 +42,13 @@ impl Entity {
         }
     }
 
+    /// A number, if there is one.
+    pub(super) fn float_if(&mut self, name: &str, value: Option<f64>) {
+        if let Some(value) = value {
+            self.float(name, value);
+        }
+    }
+
     pub(super) fn integer(&mut self, name: &str, value: i64) {
         self.param("integer", name, &value.to_string());
     }

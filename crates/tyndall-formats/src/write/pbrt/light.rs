@@ -1,10 +1,13 @@
 //! Lights.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, DVec4};
 
 use super::Pen;
 use super::entity::Entity;
-use crate::desc::{AreaLightDesc, EnvironmentMapping, LightDesc, LightKind, SpotFalloff};
+use crate::desc::{
+    AreaLightDesc, EnvironmentMapping, Evenness, FovAxis, LightDesc, LightKind, MappingDesc, Spanned, SpotFalloff,
+    Spread, TextureKind, Varying, WrapKind,
+};
 use crate::write::number::shortest;
 use crate::write::place::target;
 
@@ -29,7 +32,10 @@ impl Pen<'_, '_> {
                 }
                 entity
             }
-            LightKind::Spot { intensity, cutoff, beam, falloff } => {
+            LightKind::Spot { intensity, cutoff, beam, falloff, slide } => {
+                if let Some(slide) = slide {
+                    self.lacks(slide.span, "a picture in front of a spot");
+                }
                 let mut entity = Entity::new("LightSource", &["spot"]);
                 self.emission(&mut entity, "I", "scale", intensity);
                 aim = self.aim(&mut entity, light);
@@ -54,7 +60,7 @@ impl Pen<'_, '_> {
                 self.emission(&mut entity, "L", "scale", radiance);
                 entity
             }
-            LightKind::Environment { path, scale, mapping } => {
+            LightKind::Environment { path, scale, illuminance, mapping } => {
                 if *mapping == EnvironmentMapping::LatitudeLongitude {
                     let what =
                         "an environment by longitude and latitude (its `imgtool makeequiarea` turns the picture)";
@@ -64,6 +70,45 @@ impl Pen<'_, '_> {
                 let file = self.draft.relative(&path.value, path.span);
                 entity.string("filename", &file);
                 entity.float_unless("scale", *scale, 1.0);
+                entity.float_if("illuminance", *illuminance);
+                aim = Aim::Space(light.to_world);
+                entity
+            }
+            LightKind::Goniometric { intensity, path, power } => {
+                let mut entity = Entity::new("LightSource", &["goniometric"]);
+                self.emission(&mut entity, "I", "scale", intensity);
+                let file = self.draft.relative(&path.value, path.span);
+                entity.string("filename", &file);
+                entity.float_if("power", *power);
+                // The middle of the picture is +y.
+                let swap = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
+                aim = Aim::Space(light.to_world * swap);
+                entity
+            }
+            LightKind::Projector { emission, slide, fov, axis, power, even } => {
+                if *even != Evenness::Intensity || *axis != FovAxis::Smaller {
+                    return self.lacks(light.span, "Mitsuba's projector, which lights a wall evenly");
+                }
+                let mut entity = Entity::new("LightSource", &["projection"]);
+                self.emission(&mut entity, "I", "scale", emission);
+                match slide {
+                    Some(slide) => self.picture(&mut entity, slide),
+                    None => self.lacks(light.span, "a projector without a picture"),
+                }
+                entity.float_unless("fov", fov.value, 90.0);
+                entity.float_if("power", *power);
+                aim = Aim::Space(light.to_world);
+                entity
+            }
+            LightKind::Portal { corners, radiance, path, illuminance } => {
+                let mut entity = Entity::new("LightSource", &["infinite"]);
+                self.emission(&mut entity, "L", "scale", radiance);
+                if let Some(path) = path {
+                    let file = self.draft.relative(&path.value, path.span);
+                    entity.string("filename", &file);
+                }
+                entity.float_if("illuminance", *illuminance);
+                entity.list("point3", "portal", corners.value.as_flattened());
                 aim = Aim::Space(light.to_world);
                 entity
             }
@@ -103,9 +148,29 @@ impl Pen<'_, '_> {
         Aim::Nowhere
     }
 
+    /// A picture of light, which pbrt takes as it is.
+    fn picture(&mut self, entity: &mut Entity, picture: &Spanned<Varying>) {
+        let desc = self.draft.desc;
+        let texture = if let Varying::Texture(id) = picture.value { desc.texture(id) } else { None };
+        match texture.map(|texture| &texture.kind) {
+            Some(TextureKind::Image(image)) if image.mapping == MappingDesc::UV && image.wrap == WrapKind::Clamp => {
+                let file = self.draft.relative(&image.path.value, image.path.span);
+                entity.string("filename", &file);
+            }
+            _ => self.lacks(picture.span, "light by a texture that is no picture as it is"),
+        }
+    }
+
     pub(super) fn area_light(&mut self, light: &AreaLightDesc) {
         let mut entity = Entity::new("AreaLightSource", &["diffuse"]);
         self.emission(&mut entity, "L", "scale", &light.radiance);
+        if let Some(pattern) = &light.pattern {
+            self.picture(&mut entity, pattern);
+        }
+        entity.float_if("power", light.power);
+        if light.spread == Spread::Straight {
+            self.lacks(light.span, "a surface that shines straight ahead only");
+        }
         if light.two_sided {
             entity.boolean("twosided", true);
         }
