@@ -159,22 +159,51 @@ fn check(below: &str, side: u32, least: usize) {
 
 #[test]
 fn each_word_of_mitsuba_goes_to_pbrt_and_back() {
-    check("words/mitsuba", 24, 0);
+    check("words/mitsuba", 24, 45);
 }
 
 #[test]
 fn each_word_of_pbrt_goes_to_mitsuba_and_back() {
-    check("words/pbrt", 24, 0);
+    check("words/pbrt", 24, 35);
 }
 
 #[test]
 fn the_scenes_of_other_renderers_go_there_and_back() {
-    check("peers/mitsuba", 12, 0);
-    check("peers/pbrt", 12, 0);
+    check("peers/mitsuba", 12, 11);
+    check("peers/pbrt", 12, 8);
 }
 
 #[test]
 fn the_lecture_and_the_glass_of_milk_go_there_and_back() {
-    check("lecture", 12, 0);
-    check("milk", 6, 0);
+    check("lecture", 12, 1);
+    check("milk", 6, 1);
+}
+
+/// Whatever line of a scene is left out, if it is a scene still, it is written in both languages, and read again.
+#[test]
+fn every_scene_with_a_line_less_is_written_and_read_again() {
+    let dir = scratch("lines");
+    for path in scenes("words/mitsuba").into_iter().chain(scenes("words/pbrt")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for left_out in 0..text.lines().count() {
+            let less: Vec<_> = text.lines().enumerate().filter(|(i, _)| *i != left_out).map(|(_, line)| line).collect();
+            let less = less.join("\n");
+            let read = match Language::of(&path).unwrap() {
+                Language::Pbrt => tyndall_formats::pbrt::parse(&path, &less),
+                Language::Mitsuba => tyndall_formats::mitsuba::parse(&path, &less, &[]),
+            };
+            let Ok((desc, sources)) = read else { continue };
+            for name in ["less.pbrt", "less.xml"] {
+                let target = dir.join(name);
+                let written = write(&desc, &sources, &target, Unsupported::Warn).unwrap_or_else(|e| panic!("{e}"));
+                save(&target, &written);
+                // Without a camera that the language knows, Mitsuba takes it for no scene.
+                let blind = written.warnings.iter().any(|w| w.message.contains("a camera"));
+                if !blind || name == "less.pbrt" {
+                    self::read(&target);
+                }
+            }
+        }
+    }
+    std::fs::remove_dir_all(dir).unwrap();
 }

@@ -132,7 +132,8 @@ impl Pen<'_, '_> {
             MaterialKind::Interface => Element::plugin("bsdf", "null"),
             MaterialKind::Mix { of: [first, second], amount } => {
                 let mut element = Element::plugin("bsdf", "blendbsdf");
-                element.extend(self.varying("weight", amount));
+                let weight = self.varying("weight", amount);
+                element.push(weight.unwrap_or_else(|| Element::parameter("float", "weight", "0.5")));
                 element.push(self.material_ref(first.value));
                 element.push(self.material_ref(second.value));
                 element
@@ -161,7 +162,11 @@ impl Pen<'_, '_> {
             }
             ReliefMap::Normals(texture) => (Element::plugin("bsdf", "normalmap"), self.varying("normalmap", texture)),
         };
-        element.extend(texture);
+        let Some(texture) = texture else {
+            // There is no word for it: the surface is even.
+            return self.face(of);
+        };
+        element.push(texture);
         match rule {
             Rule::Mitsuba { flips, shadows, mirrored } => {
                 if !flips {
