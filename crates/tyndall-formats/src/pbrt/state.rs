@@ -121,7 +121,7 @@ impl State {
     /// It is singular or not finite; the transformation stays what it was.
     pub(super) fn set(&mut self, ctm: DMat4, inverse: DMat4, span: Span) -> Result<(), SceneError> {
         // Scale-free: the determinant of a matrix of nanometres is tiny and yet right.
-        let finite = [ctm, inverse, ctm.inverse()].iter().all(|m| m.is_finite());
+        let finite = [ctm, inverse, ctm.inverse()].iter().all(DMat4::is_finite);
         if !finite || ctm.determinant() == 0.0 {
             return Err(SceneError::at(span, "this makes a transformation that cannot be undone")
                 .help("do not scale by 0; the rows of a matrix must be independent"));

@@ -65,9 +65,9 @@ impl Draft<'_> {
         }
         names.unique(Some(&wanted), "mesh")
     }
+}
 
-    /// Whether a PLY file has normals. `None` if it cannot be read: whoever renders the scene is told.
-    pub(super) fn has_normals(&self, path: &FileRef) -> Option<bool> {
-        read_ply(&path.value).ok().map(|mesh| mesh.normals.is_some())
-    }
+/// Whether a PLY file has normals. `None` if it cannot be read: whoever renders the scene is told.
+pub(super) fn has_normals(path: &FileRef) -> Option<bool> {
+    read_ply(&path.value).ok().map(|mesh| mesh.normals.is_some())
 }

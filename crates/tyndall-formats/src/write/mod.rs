@@ -162,14 +162,12 @@ impl Draft<'_> {
     fn relative(&mut self, path: &Path, span: Span) -> String {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let relative = relative(&path, &self.directory);
-        match relative.to_str() {
-            Some(name) => name.replace('\\', "/"),
-            None => {
-                let message = format!("the name {} is not UTF-8", relative.display());
-                self.errors.push(SceneError::at(span, message).help("rename the file"));
-                String::new()
-            }
+        if let Some(name) = relative.to_str() {
+            return name.replace('\\', "/");
         }
+        let message = format!("the name {} is not UTF-8", relative.display());
+        self.errors.push(SceneError::at(span, message).help("rename the file"));
+        String::new()
     }
 }
 

@@ -206,12 +206,11 @@ impl Pen<'_, '_> {
                 if is_grey(&eta.value, 0.0) && is_grey(&k.value, 1.0) {
                     return;
                 }
-                match metal(&eta.value, &k.value) {
-                    Some(name) => element.string("material", name),
-                    None => {
-                        element.extend(self.varying("eta", eta));
-                        element.extend(self.varying("k", k));
-                    }
+                if let Some(name) = metal(&eta.value, &k.value) {
+                    element.string("material", name);
+                } else {
+                    element.extend(self.varying("eta", eta));
+                    element.extend(self.varying("k", k));
                 }
             }
             ConductorOptics::Reflectance(_) => self.lacks(span, "a metal by its reflectance"),

@@ -48,7 +48,7 @@ pub(super) fn scene(draft: &mut Draft<'_>) -> String {
     let shapes = pen.shapes(meter);
     for part in [media, materials, lights, shapes] {
         scene.gap();
-        part.into_iter().for_each(|element| scene.push(element));
+        scene.extend(part);
     }
     scene.into_text()
 }

@@ -168,7 +168,9 @@ impl Pen<'_, '_> {
                 ("crop_width", c.x1 - c.x0),
                 ("crop_height", c.y1 - c.y0),
             ];
-            crop.into_iter().for_each(|(name, v)| element.integer(name, v.into()));
+            for (name, v) in crop {
+                element.integer(name, v.into());
+            }
         }
         element.extend(self.filter(film));
         if film.exposure != 1.0 {

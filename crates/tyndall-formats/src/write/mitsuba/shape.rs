@@ -10,6 +10,7 @@ use super::emitter::point;
 use super::placed;
 use crate::build::shapes::triangles_of;
 use crate::desc::{FileRef, MediumInterface, PatchDesc, ShapeDesc, ShapeKind};
+use crate::write::mesh::has_normals;
 use crate::write::place::Place;
 
 impl Pen<'_, '_> {
@@ -91,10 +92,10 @@ impl Pen<'_, '_> {
         for corners in &patches.indices {
             let corners = corners.map(|i| Vec3::from_array(patches.positions[i as usize]));
             if let Some(to_world) = rectangle_of(shape.to_world, corners) {
-                elements.push(self.placed_plugin("rectangle", to_world));
+                elements.push(placed_plugin("rectangle", to_world));
             } else if let Some(mesh) = Patch::new(corners).as_triangles() {
                 let name = self.draft.mesh_file(shape, mesh);
-                elements.push(self.mesh_file("ply", &name, shape, true));
+                elements.push(mesh_file("ply", &name, shape, true));
             } else {
                 self.lacks(shape.span, "curved bilinear patches");
             }
@@ -145,7 +146,7 @@ impl Pen<'_, '_> {
                     self.lacks(shape.span, "a part of a cylinder");
                 }
                 let up = DMat4::from_translation(DVec3::new(0.0, 0.0, *low));
-                let mut element = self.placed_plugin("cylinder", shape.to_world * up);
+                let mut element = placed_plugin("cylinder", shape.to_world * up);
                 if high - low != 1.0 {
                     element.push(point("p1", DVec3::new(0.0, 0.0, high - low)));
                 }
@@ -154,7 +155,7 @@ impl Pen<'_, '_> {
             }
             ShapeKind::Subdivision { .. } => {
                 let name = self.draft.mesh(shape)?;
-                self.mesh_file("ply", &name, shape, false)
+                mesh_file("ply", &name, shape, false)
             }
             ShapeKind::Disk { height, radius, inner_radius, turn, mapping } => {
                 if *inner_radius > 0.0 || *turn != Turn::FULL {
@@ -165,20 +166,17 @@ impl Pen<'_, '_> {
                 }
                 let unit = DMat4::from_translation(DVec3::new(0.0, 0.0, *height))
                     * DMat4::from_scale(DVec3::new(*radius, *radius, 1.0));
-                self.placed_plugin("disk", shape.to_world * unit)
+                placed_plugin("disk", shape.to_world * unit)
             }
-            ShapeKind::Rectangle => self.placed_plugin("rectangle", shape.to_world),
-            ShapeKind::Cube => self.placed_plugin("cube", shape.to_world),
+            ShapeKind::Rectangle => placed_plugin("rectangle", shape.to_world),
+            ShapeKind::Cube => placed_plugin("cube", shape.to_world),
             ShapeKind::TriangleMesh(_) => {
                 let mesh = triangles_of(&shape.kind)?.ok()?;
-                match [("rectangle", ShapeKind::Rectangle), ("cube", ShapeKind::Cube)].into_iter().find(|(_, known)| {
-                    triangles_of(known).and_then(Result::ok).is_some_and(|known| is_same(&known, &mesh))
-                }) {
-                    Some((word, _)) => self.placed_plugin(word, shape.to_world),
-                    None => {
-                        let name = self.draft.mesh(shape)?;
-                        self.mesh_file("ply", &name, shape, mesh.normals.is_empty())
-                    }
+                if let Some(word) = word_of(&mesh) {
+                    placed_plugin(word, shape.to_world)
+                } else {
+                    let name = self.draft.mesh(shape)?;
+                    mesh_file("ply", &name, shape, mesh.normals.is_empty())
                 }
             }
             // Each patch is a shape of its own.
@@ -187,7 +185,7 @@ impl Pen<'_, '_> {
                 if let Some(displacement) = displacement {
                     self.lacks(displacement.height.span, "a mesh whose vertices a texture moves");
                 }
-                let flat = *face_normals || !*smooth_normals && self.draft.has_normals(path) == Some(false);
+                let flat = *face_normals || !*smooth_normals && has_normals(path) == Some(false);
                 let mut element = self.file("ply", path, shape, flat);
                 if *flip_tex_coords {
                     element.boolean("flip_tex_coords", true);
@@ -211,26 +209,33 @@ impl Pen<'_, '_> {
         })
     }
 
-    fn placed_plugin(&mut self, word: &str, to_world: DMat4) -> Element {
-        let mut element = Element::plugin("shape", word);
-        element.extend(placed(to_world));
-        element
-    }
-
     fn file(&mut self, word: &str, path: &FileRef, shape: &ShapeDesc, flat: bool) -> Element {
         let name = self.draft.relative(&path.value, path.span);
-        self.mesh_file(word, &name, shape, flat)
+        mesh_file(word, &name, shape, flat)
     }
+}
 
-    fn mesh_file(&mut self, word: &str, name: &str, shape: &ShapeDesc, flat: bool) -> Element {
-        let mut element = Element::plugin("shape", word);
-        element.string("filename", name);
-        element.extend(placed(shape.to_world));
-        if flat {
-            element.boolean("face_normals", true);
-        }
-        element
+/// Mitsuba's word for triangles that are one of its own shapes.
+fn word_of(mesh: &Mesh) -> Option<&'static str> {
+    let known = [("rectangle", ShapeKind::Rectangle), ("cube", ShapeKind::Cube)];
+    let is_this = |kind| triangles_of(kind).and_then(Result::ok).is_some_and(|known| is_same(&known, mesh));
+    known.iter().find(|(_, kind)| is_this(kind)).map(|(word, _)| *word)
+}
+
+fn placed_plugin(word: &str, to_world: DMat4) -> Element {
+    let mut element = Element::plugin("shape", word);
+    element.extend(placed(to_world));
+    element
+}
+
+fn mesh_file(word: &str, name: &str, shape: &ShapeDesc, flat: bool) -> Element {
+    let mut element = Element::plugin("shape", word);
+    element.string("filename", name);
+    element.extend(placed(shape.to_world));
+    if flat {
+        element.boolean("face_normals", true);
     }
+    element
 }
 
 /// Where Mitsuba's rectangle has these corners, to the last bit.

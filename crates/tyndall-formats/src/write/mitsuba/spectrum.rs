@@ -51,11 +51,9 @@ impl Pen<'_, '_> {
         let span = light.spectrum.span;
         let relative = light.magnitude == Magnitude::UnitLuminance;
         match &light.spectrum.value {
-            SpectrumDesc::Constant(v) => Some(self.scaled_colour(name, [*v; 3], light.scale)),
-            SpectrumDesc::Rgb(rgb) => Some(self.scaled_colour(name, *rgb, light.scale)),
-            SpectrumDesc::Named(word) if word == "stdillum-D65" => {
-                Some(self.scaled_colour(name, [1.0; 3], light.scale))
-            }
+            SpectrumDesc::Constant(v) => Some(scaled_colour(name, [*v; 3], light.scale)),
+            SpectrumDesc::Rgb(rgb) => Some(scaled_colour(name, *rgb, light.scale)),
+            SpectrumDesc::Named(word) if word == "stdillum-D65" => Some(scaled_colour(name, [1.0; 3], light.scale)),
             SpectrumDesc::Blackbody { kelvin } => Some(self.black_body(name, *kelvin, light, span)),
             SpectrumDesc::File(path) if !relative && light.scale == 1.0 => {
                 let file = self.draft.relative(path, span);
@@ -65,21 +63,15 @@ impl Pen<'_, '_> {
                 self.lacks(span, "a spectrum of light from a file, times a factor");
                 None
             }
-            SpectrumDesc::Named(word) => match named_samples(word) {
-                Some((lambda, values)) => self.table(name, &lambda, &values, true, light),
-                None => {
-                    self.lacks(span, "a spectrum by this name");
-                    None
+            SpectrumDesc::Named(word) => {
+                if let Some((lambda, values)) = named_samples(word) {
+                    return self.table(name, &lambda, &values, true, light);
                 }
-            },
+                self.lacks(span, "a spectrum by this name");
+                None
+            }
             SpectrumDesc::Samples { lambda, values } => self.table(name, lambda, values, relative, light),
         }
-    }
-
-    fn scaled_colour(&self, name: &str, rgb: [f64; 3], scale: f64) -> Element {
-        // The renderer multiplies in single precision.
-        let product = |v: f64| as_single(f64::from(v as f32 * scale as f32));
-        colour(name, if scale == 1.0 { rgb } else { rgb.map(product) })
     }
 
     /// Mitsuba's black bodies are as bright as they are.
@@ -126,4 +118,11 @@ pub(super) fn colour(name: &str, rgb: [f64; 3]) -> Element {
 fn samples(name: &str, lambda: &[f64], values: &[f64]) -> Element {
     let pairs: Vec<_> = lambda.iter().zip(values).map(|(l, v)| format!("{}:{}", double(*l), double(*v))).collect();
     Element::new("spectrum").with("name", name).with("value", &pairs.join(", "))
+}
+
+/// A colour times a factor.
+fn scaled_colour(name: &str, rgb: [f64; 3], scale: f64) -> Element {
+    // The renderer multiplies in single precision.
+    let product = |v: f64| as_single(f64::from(v as f32 * scale as f32));
+    colour(name, if scale == 1.0 { rgb } else { rgb.map(product) })
 }

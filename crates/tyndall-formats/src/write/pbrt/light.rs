@@ -21,99 +21,8 @@ impl Pen<'_, '_> {
     }
 
     fn light(&mut self, light: &LightDesc) {
-        let mut aim = Aim::Nowhere;
-        let entity = match &light.kind {
-            LightKind::Point { intensity } => {
-                let mut entity = Entity::new("LightSource", &["point"]);
-                self.emission(&mut entity, "I", "scale", intensity);
-                let from = light.to_world.w_axis.truncate();
-                if from != DVec3::ZERO {
-                    entity.list("point3", "from", &from.to_array());
-                }
-                entity
-            }
-            LightKind::Spot { intensity, cutoff, beam, falloff, slide } => {
-                if let Some(slide) = slide {
-                    self.lacks(slide.span, "a picture in front of a spot");
-                }
-                let mut entity = Entity::new("LightSource", &["spot"]);
-                self.emission(&mut entity, "I", "scale", intensity);
-                aim = self.aim(&mut entity, light);
-                entity.float_unless("coneangle", *cutoff, 30.0);
-                let delta = shortest(cutoff - beam, |delta| cutoff - delta == *beam);
-                entity.float_unless("conedeltaangle", delta, 5.0);
-                if *falloff == SpotFalloff::LinearAngle && beam != cutoff {
-                    let message =
-                        "in pbrt a spot fades between beam and cutoff by a smooth step, not linearly in the angle";
-                    self.draft.differs(light.span, message);
-                }
-                entity
-            }
-            LightKind::Distant { irradiance } => {
-                let mut entity = Entity::new("LightSource", &["distant"]);
-                self.emission(&mut entity, "L", "scale", irradiance);
-                aim = self.aim(&mut entity, light);
-                entity
-            }
-            LightKind::Constant { radiance } => {
-                let mut entity = Entity::new("LightSource", &["infinite"]);
-                self.emission(&mut entity, "L", "scale", radiance);
-                entity
-            }
-            LightKind::Environment { path, scale, illuminance, mapping } => {
-                if *mapping == EnvironmentMapping::LatitudeLongitude {
-                    let what =
-                        "an environment by longitude and latitude (its `imgtool makeequiarea` turns the picture)";
-                    return self.lacks(light.span, what);
-                }
-                let mut entity = Entity::new("LightSource", &["infinite"]);
-                let file = self.draft.relative(&path.value, path.span);
-                entity.string("filename", &file);
-                entity.float_unless("scale", *scale, 1.0);
-                entity.float_if("illuminance", *illuminance);
-                aim = Aim::Space(light.to_world);
-                entity
-            }
-            LightKind::Goniometric { intensity, path, power } => {
-                let mut entity = Entity::new("LightSource", &["goniometric"]);
-                self.emission(&mut entity, "I", "scale", intensity);
-                let file = self.draft.relative(&path.value, path.span);
-                entity.string("filename", &file);
-                entity.float_if("power", *power);
-                // The middle of the picture is +y.
-                let swap = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
-                aim = Aim::Space(light.to_world * swap);
-                entity
-            }
-            LightKind::Projector { emission, slide, fov, axis, power, even } => {
-                if *even != Evenness::Intensity || *axis != FovAxis::Smaller {
-                    return self.lacks(light.span, "Mitsuba's projector, which lights a wall evenly");
-                }
-                let mut entity = Entity::new("LightSource", &["projection"]);
-                self.emission(&mut entity, "I", "scale", emission);
-                match slide {
-                    Some(slide) => self.picture(&mut entity, slide),
-                    None => self.lacks(light.span, "a projector without a picture"),
-                }
-                entity.float_unless("fov", fov.value, 90.0);
-                entity.float_if("power", *power);
-                aim = Aim::Space(light.to_world);
-                entity
-            }
-            LightKind::Portal { corners, radiance, path, illuminance } => {
-                let mut entity = Entity::new("LightSource", &["infinite"]);
-                self.emission(&mut entity, "L", "scale", radiance);
-                if let Some(path) = path {
-                    let file = self.draft.relative(&path.value, path.span);
-                    entity.string("filename", &file);
-                }
-                entity.float_if("illuminance", *illuminance);
-                entity.list("point3", "portal", corners.value.as_flattened());
-                aim = Aim::Space(light.to_world);
-                entity
-            }
-        };
-        let space = match aim {
+        let Some((entity, space)) = self.light_kind(light) else { return };
+        let space = match space {
             Aim::Space(m) if m != DMat4::IDENTITY => Some(m),
             _ => None,
         };
@@ -134,18 +43,103 @@ impl Pen<'_, '_> {
         }
     }
 
-    /// `from` and `to` of a light along the +z of its space, or that space if they would not be exact.
-    fn aim(&mut self, entity: &mut Entity, light: &LightDesc) -> Aim {
-        let is_distant = matches!(light.kind, LightKind::Distant { .. });
-        let from = if is_distant { DVec3::ZERO } else { light.to_world.w_axis.truncate() };
-        let Some(to) = target(from, light.to_world.z_axis.truncate()) else { return Aim::Space(light.to_world) };
-        if from != DVec3::ZERO {
-            entity.list("point3", "from", &from.to_array());
-        }
-        if to != DVec3::Z {
-            entity.list("point3", "to", &to.to_array());
-        }
-        Aim::Nowhere
+    /// The light, and the space that it needs.
+    fn light_kind(&mut self, light: &LightDesc) -> Option<(Entity, Aim)> {
+        let mut space = Aim::Nowhere;
+        let entity = match &light.kind {
+            LightKind::Point { intensity } => {
+                let mut entity = Entity::new("LightSource", &["point"]);
+                self.emission(&mut entity, "I", "scale", intensity);
+                let from = light.to_world.w_axis.truncate();
+                if from != DVec3::ZERO {
+                    entity.list("point3", "from", &from.to_array());
+                }
+                entity
+            }
+            LightKind::Spot { intensity, cutoff, beam, falloff, slide } => {
+                if let Some(slide) = slide {
+                    self.lacks(slide.span, "a picture in front of a spot");
+                }
+                let mut entity = Entity::new("LightSource", &["spot"]);
+                self.emission(&mut entity, "I", "scale", intensity);
+                space = aim(&mut entity, light);
+                entity.float_unless("coneangle", *cutoff, 30.0);
+                let delta = shortest(cutoff - beam, |delta| cutoff - delta == *beam);
+                entity.float_unless("conedeltaangle", delta, 5.0);
+                if *falloff == SpotFalloff::LinearAngle && beam != cutoff {
+                    let message =
+                        "in pbrt a spot fades between beam and cutoff by a smooth step, not linearly in the angle";
+                    self.draft.differs(light.span, message);
+                }
+                entity
+            }
+            LightKind::Distant { irradiance } => {
+                let mut entity = Entity::new("LightSource", &["distant"]);
+                self.emission(&mut entity, "L", "scale", irradiance);
+                space = aim(&mut entity, light);
+                entity
+            }
+            LightKind::Constant { radiance } => {
+                let mut entity = Entity::new("LightSource", &["infinite"]);
+                self.emission(&mut entity, "L", "scale", radiance);
+                entity
+            }
+            LightKind::Environment { path, scale, illuminance, mapping } => {
+                if *mapping == EnvironmentMapping::LatitudeLongitude {
+                    let what =
+                        "an environment by longitude and latitude (its `imgtool makeequiarea` turns the picture)";
+                    self.lacks(light.span, what);
+                    return None;
+                }
+                let mut entity = Entity::new("LightSource", &["infinite"]);
+                let file = self.draft.relative(&path.value, path.span);
+                entity.string("filename", &file);
+                entity.float_unless("scale", *scale, 1.0);
+                entity.float_if("illuminance", *illuminance);
+                space = Aim::Space(light.to_world);
+                entity
+            }
+            LightKind::Goniometric { intensity, path, power } => {
+                let mut entity = Entity::new("LightSource", &["goniometric"]);
+                self.emission(&mut entity, "I", "scale", intensity);
+                let file = self.draft.relative(&path.value, path.span);
+                entity.string("filename", &file);
+                entity.float_if("power", *power);
+                // The middle of the picture is +y.
+                let swap = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
+                space = Aim::Space(light.to_world * swap);
+                entity
+            }
+            LightKind::Projector { emission, slide, fov, axis, power, even } => {
+                if *even != Evenness::Intensity || *axis != FovAxis::Smaller {
+                    self.lacks(light.span, "Mitsuba's projector, which lights a wall evenly");
+                    return None;
+                }
+                let mut entity = Entity::new("LightSource", &["projection"]);
+                self.emission(&mut entity, "I", "scale", emission);
+                match slide {
+                    Some(slide) => self.picture(&mut entity, slide),
+                    None => self.lacks(light.span, "a projector without a picture"),
+                }
+                entity.float_unless("fov", fov.value, 90.0);
+                entity.float_if("power", *power);
+                space = Aim::Space(light.to_world);
+                entity
+            }
+            LightKind::Portal { corners, radiance, path, illuminance } => {
+                let mut entity = Entity::new("LightSource", &["infinite"]);
+                self.emission(&mut entity, "L", "scale", radiance);
+                if let Some(path) = path {
+                    let file = self.draft.relative(&path.value, path.span);
+                    entity.string("filename", &file);
+                }
+                entity.float_if("illuminance", *illuminance);
+                entity.list("point3", "portal", corners.value.as_flattened());
+                space = Aim::Space(light.to_world);
+                entity
+            }
+        };
+        Some((entity, space))
     }
 
     /// A picture of light, which pbrt takes as it is.
@@ -176,6 +170,20 @@ impl Pen<'_, '_> {
         }
         self.entity(entity);
     }
+}
+
+/// `from` and `to` of a light along the +z of its space, or that space if they would not be exact.
+fn aim(entity: &mut Entity, light: &LightDesc) -> Aim {
+    let is_distant = matches!(light.kind, LightKind::Distant { .. });
+    let from = if is_distant { DVec3::ZERO } else { light.to_world.w_axis.truncate() };
+    let Some(to) = target(from, light.to_world.z_axis.truncate()) else { return Aim::Space(light.to_world) };
+    if from != DVec3::ZERO {
+        entity.list("point3", "from", &from.to_array());
+    }
+    if to != DVec3::Z {
+        entity.list("point3", "to", &to.to_array());
+    }
+    Aim::Nowhere
 }
 
 /// The space that is left to be said.

@@ -26,7 +26,8 @@ use texture::Textures;
 
 /// Lines of comment.
 pub(super) fn commented(lines: &[String]) -> String {
-    lines.iter().map(|line| format!("# {}\n", super::names::printable(line))).collect::<String>() + "\n"
+    let lines: Vec<_> = lines.iter().map(|line| format!("# {}", super::names::printable(line))).collect();
+    lines.join("\n") + "\n\n"
 }
 
 /// The scene without its header.

@@ -7,6 +7,7 @@ use super::Pen;
 use super::entity::{Entity, quoted};
 use crate::build::shapes::triangles_of;
 use crate::desc::{MaterialKind, PatchDesc, ShapeDesc, ShapeKind};
+use crate::write::mesh::has_normals;
 use crate::write::names::{Names, printable};
 use crate::write::number::shortest;
 
@@ -66,7 +67,7 @@ impl Pen<'_, '_> {
             self.interface(interface.inside, interface.outside);
         }
         self.place(shape.to_world);
-        if self.is_reversed(shape) {
+        if is_reversed(shape) {
             self.sheet.line("ReverseOrientation");
         }
         self.sheet.line(&format!("NamedMaterial {name}"));
@@ -75,13 +76,6 @@ impl Pen<'_, '_> {
         }
         self.entity(entity);
         self.close();
-    }
-
-    /// pbrt turns the normals of its quadrics round under a mirroring matrix.
-    fn is_reversed(&self, shape: &ShapeDesc) -> bool {
-        let quadric =
-            matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. } | ShapeKind::Cylinder { .. });
-        shape.reverse_orientation ^ (quadric && shape.to_world.determinant() < 0.0)
     }
 
     fn shape_kind(&mut self, shape: &ShapeDesc) -> Option<Entity> {
@@ -122,7 +116,7 @@ impl Pen<'_, '_> {
                 entity.param("point3", "P", "[ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]");
                 entity
             }
-            ShapeKind::Cube | ShapeKind::TriangleMesh(_) => self.triangles(shape)?,
+            ShapeKind::Cube | ShapeKind::TriangleMesh(_) => triangles(shape)?,
             ShapeKind::BilinearMesh(patches) => bilinear(patches),
             ShapeKind::Subdivision { positions, indices, levels } => {
                 let mut entity = Entity::new("Shape", &["loopsubdiv"]);
@@ -135,11 +129,7 @@ impl Pen<'_, '_> {
             }
             ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let as_it_is = !*flip_tex_coords
-                    && self.draft.has_normals(path).is_none_or(
-                        |has| {
-                            if has { !*face_normals } else { !*smooth_normals }
-                        },
-                    );
+                    && has_normals(path).is_none_or(|has| if has { !*face_normals } else { !*smooth_normals });
                 let name =
                     if as_it_is { self.draft.relative(&path.value, path.span) } else { self.draft.mesh(shape)? };
                 let mut entity = Entity::new("Shape", &["plymesh"]);
@@ -158,18 +148,6 @@ impl Pen<'_, '_> {
             }
         })
     }
-
-    /// Triangles in words.
-    fn triangles(&mut self, shape: &ShapeDesc) -> Option<Entity> {
-        let mesh = triangles_of(&shape.kind)?.ok()?;
-        let flat = |points: &[tyndall::math::Vec3]| points.iter().flat_map(|p| p.to_array()).collect::<Vec<_>>();
-        let mut entity = Entity::new("Shape", &["trianglemesh"]);
-        entity.singles("point3", "P", &flat(&mesh.positions));
-        entity.indices("indices", mesh.indices.as_flattened());
-        entity.singles("normal", "N", &flat(&mesh.normals));
-        entity.singles("point2", "uv", &mesh.uvs.iter().flat_map(|uv| uv.to_array()).collect::<Vec<_>>());
-        Some(entity)
-    }
 }
 
 /// How far round a quadric goes.
@@ -186,4 +164,23 @@ fn bilinear(patches: &PatchDesc) -> Entity {
     entity.singles("normal", "N", patches.normals.as_flattened());
     entity.singles("point2", "uv", patches.uvs.as_flattened());
     entity
+}
+
+/// pbrt turns the normals of its quadrics round under a mirroring matrix.
+fn is_reversed(shape: &ShapeDesc) -> bool {
+    let quadric = matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. } | ShapeKind::Cylinder { .. });
+    shape.reverse_orientation ^ (quadric && shape.to_world.determinant() < 0.0)
+}
+
+/// Triangles in words.
+fn triangles(shape: &ShapeDesc) -> Option<Entity> {
+    let mesh = triangles_of(&shape.kind)?.ok()?;
+    let flat =
+        |points: &[tyndall::math::Vec3]| points.iter().flat_map(tyndall::math::Vec3::to_array).collect::<Vec<_>>();
+    let mut entity = Entity::new("Shape", &["trianglemesh"]);
+    entity.singles("point3", "P", &flat(&mesh.positions));
+    entity.indices("indices", mesh.indices.as_flattened());
+    entity.singles("normal", "N", &flat(&mesh.normals));
+    entity.singles("point2", "uv", &mesh.uvs.iter().flat_map(tyndall::math::Vec2::to_array).collect::<Vec<_>>());
+    Some(entity)
 }
