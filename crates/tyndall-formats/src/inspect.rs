@@ -114,8 +114,11 @@ fn largest_body(scene: &Scene, medium: tyndall::medium::MediumId) -> f32 {
 /// the way.
 fn lights_behind_glass(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneError>) {
     let has_no_size = |kind: &LightKind| match kind {
-        LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Distant { .. } => true,
-        LightKind::Goniometric { .. } | LightKind::Projector { .. } => true,
+        LightKind::Point { .. }
+        | LightKind::Spot { .. }
+        | LightKind::Distant { .. }
+        | LightKind::Goniometric { .. }
+        | LightKind::Projector { .. } => true,
         LightKind::Constant { .. } | LightKind::Environment { .. } | LightKind::Portal { .. } => false,
     };
     let Some(light) = desc.lights.iter().find(|light| has_no_size(&light.kind)) else { return };
@@ -211,7 +214,7 @@ mod tests {
             assert!(told.contains(what), "{told}");
         }
         assert!(told.contains("the texture \"bark\" is not used"), "{told}");
-        assert!(!told.contains("moss") && !told.contains("wood"), "{told}");
+        assert!(!told.contains("the texture \"moss\"") && !told.contains("the texture \"wood\""), "{told}");
         assert!(told.contains("scene.pbrt:2:1"), "{told}");
     }
 

@@ -67,7 +67,7 @@ impl Builder<'_> {
         };
         let pieces = pieces(geometry, shining.object);
         if desc.spread == Spread::Straight {
-            return self.beams(geometry, shining, pieces, &radiance, lights);
+            return self.beams(geometry, shining, &pieces, &radiance, lights);
         }
         let pieces = match geometry.shape(shining.object) {
             // Textures know triangles, and no parallelograms.
@@ -112,7 +112,7 @@ impl Builder<'_> {
         &mut self,
         geometry: &Geometry,
         shining: &Shining,
-        pieces: Pieces,
+        pieces: &Pieces,
         exitance: &Spectrum,
         lights: &mut Vec<Light>,
     ) -> Option<Emission> {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, DVec4};
 use tyndall::{
     light::{
         ConstantEnvironment, Distant, EnvironmentMap, Even, Falloff, Goniometric, Light, PointLight, Portal,
@@ -137,7 +137,7 @@ impl Builder<'_> {
             Some(texture) => self.texture(texture, Measure::Coefficient)?,
         };
         let columns = [desc.to_world.x_axis, desc.to_world.y_axis, desc.to_world.z_axis];
-        let rigid = columns.map(|c| c.normalize_or_zero());
+        let rigid = columns.map(DVec4::normalize_or_zero);
         let to_world = DMat4::from_cols(rigid[0], rigid[1], rigid[2], desc.to_world.w_axis);
         Some(Slide { to_world: self.transform(to_world, desc.span)?, half, texture })
     }
@@ -149,7 +149,7 @@ impl Builder<'_> {
         texture: Option<&Spanned<Varying>>,
         (fov, axis): (f64, FovAxis),
     ) -> Option<Light> {
-        let columns = [desc.to_world.x_axis, desc.to_world.y_axis, desc.to_world.z_axis].map(|c| c.truncate());
+        let columns = [desc.to_world.x_axis, desc.to_world.y_axis, desc.to_world.z_axis].map(DVec4::truncate);
         let square = (0..3).all(|i| {
             let (a, b) = (columns[i], columns[(i + 1) % 3]);
             a.dot(b).abs() <= 1e-3 * a.length() * b.length() && (a.length() - b.length()).abs() <= 1e-3 * a.length()
@@ -193,21 +193,16 @@ impl Builder<'_> {
         corners: &Spanned<[[f64; 3]; 4]>,
         (radiance, path, illuminance): (&EmissionDesc, Option<&FileRef>, Option<f64>),
     ) -> Option<Light> {
-        let (picture, scale) = match path {
-            Some(path) => {
-                let picture = self.light_picture(path)?;
-                if picture.width != picture.height {
-                    return self.fail(SceneError::at(path.span, "the picture of a sky behind a portal is square"));
-                }
-                let scale = radiance.scale * for_illuminance(&picture, illuminance);
-                (picture, scale)
+        let (picture, factor) = if let Some(path) = path {
+            let picture = self.light_picture(path)?;
+            if picture.width != picture.height {
+                return self.fail(SceneError::at(path.span, "the picture of a sky behind a portal is square"));
             }
-            None => {
-                let picture = Image { width: 1, height: 1, pixels: vec![self.emission(radiance)?.rgb()] };
-                let scale = for_illuminance(&picture, illuminance);
-                (picture, scale)
-            }
+            (picture, radiance.scale)
+        } else {
+            (Image { width: 1, height: 1, pixels: vec![self.emission(radiance)?.rgb()] }, 1.0)
         };
+        let scale = factor * for_illuminance(&picture, illuminance);
         let to_world = self.transform(without_translation(desc.to_world), desc.span)?;
         let points = corners.value.map(|corner| Vec3::from_array(corner.map(|v| v as f32)));
         let sky = SkyImage::new(picture.width, picture.height, &picture.pixels, scale as f32);

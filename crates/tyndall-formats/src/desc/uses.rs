@@ -1,8 +1,8 @@
 //! What refers to textures.
 
 use super::{
-    BaseDesc, CoatedDesc, ConductorOptics, MaterialKind, ReliefMap, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind,
-    Spanned, TextureId, TextureKind, Varying,
+    BaseDesc, CoatedDesc, ConductorOptics, LightKind, MaterialKind, ReliefMap, RoughnessDesc, SceneDesc, ShapeDesc,
+    ShapeKind, Spanned, TextureId, TextureKind, Varying,
 };
 
 impl SceneDesc {
@@ -11,6 +11,7 @@ impl SceneDesc {
         let shapes = self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes));
         let quantities = self.materials.iter().flat_map(|material| material.kind.quantities());
         let quantities = quantities.chain(shapes.flat_map(ShapeDesc::quantities));
+        let quantities = quantities.chain(self.lights.iter().filter_map(|light| light.kind.slide()));
         let quantities = quantities.chain(self.textures.iter().flat_map(|texture| texture.kind.quantities()));
         quantities.filter_map(|quantity| match quantity.value {
             Varying::Texture(id) => Some(id),
@@ -25,7 +26,18 @@ impl ShapeDesc {
             ShapeKind::Ply { displacement: Some(displacement), .. } => Some(&displacement.height),
             _ => None,
         };
-        self.opacity.iter().chain(height).collect()
+        let pattern = self.emission.as_ref().and_then(|light| light.pattern.as_ref());
+        self.opacity.iter().chain(height).chain(pattern).collect()
+    }
+}
+
+impl LightKind {
+    /// The picture that it shines through.
+    fn slide(&self) -> Option<&Spanned<Varying>> {
+        match self {
+            Self::Spot { slide, .. } | Self::Projector { slide, .. } => slide.as_ref(),
+            _ => None,
+        }
     }
 }
 

@@ -71,7 +71,9 @@ fn read_faces(element: &ElementDef, bytes: &mut Bytes, mesh: &mut TriangleMesh) 
             match (property, column) {
                 (PropertyType::List { count_type, data_type }, Column::Corners) => {
                     let count = bytes.index(*count_type)?;
-                    if let (3, Some(triangle)) = (count, bytes.triangle(*data_type)) {
+                    if count == 3
+                        && let Some(triangle) = bytes.triangle(*data_type)
+                    {
                         mesh.indices.push(triangle);
                         continue;
                     }

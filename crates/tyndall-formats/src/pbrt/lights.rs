@@ -210,17 +210,13 @@ fn infinite(p: &mut Params) -> LightKind {
     if let Some(corners) = portal(p) {
         return LightKind::Portal { corners, radiance, path, illuminance };
     }
-    match path {
-        Some(path) => {
-            let mapping = EnvironmentMapping::EqualAreaOctahedral;
-            LightKind::Environment { path, scale: radiance.scale, illuminance, mapping }
-        }
-        None => {
-            // Under a uniform sky E = π L.
-            radiance.scale *= illuminance.map_or(1.0, |e| e / PI);
-            LightKind::Constant { radiance }
-        }
+    if let Some(path) = path {
+        let mapping = EnvironmentMapping::EqualAreaOctahedral;
+        return LightKind::Environment { path, scale: radiance.scale, illuminance, mapping };
     }
+    // Under a uniform sky E = π L.
+    radiance.scale *= illuminance.map_or(1.0, |e| e / PI);
+    LightKind::Constant { radiance }
 }
 
 fn portal(p: &mut Params) -> Option<Spanned<[[f64; 3]; 4]>> {

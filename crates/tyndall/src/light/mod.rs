@@ -170,8 +170,12 @@ impl Light {
     pub fn is_hidden(&self) -> bool {
         match self {
             Self::Area(l) => l.opacity == 0.0,
-            Self::Point(_) | Self::Spot(_) | Self::Distant(_) => true,
-            Self::Goniometric(_) | Self::Projector(_) | Self::Beam(_) => true,
+            Self::Point(_)
+            | Self::Spot(_)
+            | Self::Distant(_)
+            | Self::Goniometric(_)
+            | Self::Projector(_)
+            | Self::Beam(_) => true,
             Self::Constant(_) | Self::Map(_) | Self::Portal(_) => false,
         }
     }

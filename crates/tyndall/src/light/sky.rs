@@ -40,7 +40,27 @@ impl SkyImage {
     pub fn radiance(&self, uv: Vec2, wavelengths: &Wavelengths) -> Lanes {
         let x = ((uv.x * self.width as f32) as u32).min(self.width - 1);
         let y = ((uv.y * self.height as f32) as u32).min(self.height - 1);
-        let rgb = self.pixels[y as usize * self.width as usize + x as usize];
+        self.light(self.pixels[y as usize * self.width as usize + x as usize], wavelengths)
+    }
+
+    /// The linear-sRGB value at a place where column x stands at x and row y at y, linear between them. Columns go round;
+    /// the outermost rows are the last.
+    pub(crate) fn between(&self, at: Vec2) -> [f32; 3] {
+        let last = self.height - 1;
+        let (x, y) = ((at.x as u32).min(self.width - 1), (at.y as u32).min(last));
+        let (dx, dy) = (at.x - x as f32, (at.y - y as f32).min(1.0));
+        let row = |y: u32| {
+            let value = |x: u32| self.pixels[y as usize * self.width as usize + x as usize];
+            let (left, right) = (value(x), value(if x + 1 == self.width { 0 } else { x + 1 }));
+            std::array::from_fn::<f32, 3, _>(|c| left[c] + (right[c] - left[c]) * dx)
+        };
+        let (upper, lower) = (row(y), row((y + 1).min(last)));
+        std::array::from_fn(|c| upper[c] + (lower[c] - upper[c]) * dy)
+    }
+
+    /// The light of a linear-sRGB value [W·m⁻²·sr⁻¹].
+    #[inline]
+    pub(crate) fn light(&self, rgb: [f32; 3], wavelengths: &Wavelengths) -> Lanes {
         match wavelengths {
             Wavelengths::Rgb => Lanes::rgb(rgb[0], rgb[1], rgb[2]),
             _ => (0..3).fold(Lanes::ZERO, |sum, c| sum + self.primaries[c].eval(wavelengths) * rgb[c]),

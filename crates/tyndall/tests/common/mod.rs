@@ -264,8 +264,10 @@ impl World {
 
     /// Radiance `above` from all directions with y > 0 and `below` from the others.
     pub(crate) fn half_sky(&mut self, above: f32, below: f32) {
-        let pixels = [[above; 3], [above; 3], [below; 3], [below; 3]];
-        let map = EnvironmentMap::new(Transform::IDENTITY, Projection::LatLong, 1, 4, &pixels, 1.0).unwrap();
+        // In the map's own space the left half of an equal-area square has x < 0.
+        let pixels = [[below; 3], [above; 3], [below; 3], [above; 3]];
+        let upright = Transform::new(glam::DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2)).unwrap();
+        let map = EnvironmentMap::new(upright, Projection::EqualArea, 2, 2, &pixels, 1.0).unwrap();
         self.lights.push(Light::Map(Box::new(map)));
     }
 
