@@ -41,7 +41,7 @@ pub enum CoatedBase {
         /// How it reflects where there is no coat.
         metal: Metal,
         /// Its microfacets, after Trowbridge and Reitz, where it is rough.
-        alpha: Roughness,
+        alpha: Box<Roughness>,
     },
 }
 
