@@ -254,7 +254,7 @@ fn taken(desc: &SceneDesc, balance: &Balance) -> Vec<Figure> {
     let medium = |i: usize| name("medium", i, desc.media.get(i).and_then(|m| m.name.as_deref()));
     let of = |estimates: &[Estimate], name: &dyn Fn(usize) -> String| -> Vec<Figure> {
         let all = estimates.iter().enumerate();
-        let told = all.filter(|(_, e)| e.mean.abs() > 1e-6 && e.mean.abs() > 2.0 * e.standard_error);
+        let told = all.filter(|(_, e)| e.mean.abs() > 1e-6 && e.mean.abs() > 4.0 * e.standard_error);
         told.map(|(i, e)| figure(name(i), "", *e)).collect()
     };
     let mut taken = of(&balance.by_material, &material);

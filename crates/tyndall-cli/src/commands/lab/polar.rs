@@ -42,7 +42,7 @@ impl Polar {
             let radius = 1.0 - f64::from(ring) / self.decades;
             let circle = (0..=90).map(|i| place(f64::from(i) * std::f64::consts::TAU / 90.0, radius));
             chart.draw_series([PathElement::new(circle.collect::<Vec<_>>(), faint)])?;
-            let label = format!("1e{}", rim - f64::from(ring));
+            let label = format!("1e{}", rim as i32 - ring);
             chart.draw_series([Text::new(label, place(0.3, radius), ("sans-serif", 15))])?;
         }
         for spoke in 0..12 {
