@@ -1,3 +1,5 @@
+//! The beam against MCML, Chandrasekhar, conservation and symmetry.
+
 use super::*;
 use crate::verify::table::rows;
 

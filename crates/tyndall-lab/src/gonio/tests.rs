@@ -1,3 +1,5 @@
+//! The goniometer against closed forms, geometric optics and discrete ordinates.
+
 use tyndall::{
     bsdf::Sides,
     material::{Index, Material, Metal, Roughness},
