@@ -26,7 +26,7 @@ pub struct Check {
     pub measured: Estimate,
     /// Whether more scattering makes it smaller, as it does what is transmitted.
     pub falls: bool,
-    /// Whether hardly any photon may contribute to it: then it is left out where its error could not be known.
+    /// Whether hardly any photon, or sample, may contribute to it: then it is left out where its error cannot be known.
     #[serde(skip)]
     pub binned: bool,
 }
@@ -46,7 +46,7 @@ impl Check {
         Self { falls: true, ..self }
     }
 
-    /// A figure of a bin in which few photons may end.
+    /// A figure to which few photons may contribute, as that of a bin.
     #[must_use]
     pub fn binned(self) -> Self {
         Self { binned: true, ..self }
@@ -130,6 +130,11 @@ impl Effort {
     /// `times` the photons, for an experiment whose figures share them, or whose photons are soon done.
     pub(super) fn times(self, times: u64) -> Self {
         Self { photons: self.photons * times, ..self }
+    }
+
+    /// For experiments whose photons go on for thousands of collisions: of a part of the tables a part of the photons.
+    pub(super) fn long(self) -> Self {
+        if self.every > 1 { Self { photons: self.photons / 4, ..self } } else { self }
     }
 
     /// Does an experiment [`REPLICATES`] times, each with other random numbers, and sums up.

@@ -158,7 +158,7 @@ pub(super) fn decay(family: &'static str, effort: Effort) -> Result<Vec<Experime
     // Where more is absorbed the light is gone before it is asymptotic.
     let experiment = |(number, row): (usize, &Row)| {
         let (albedo, nu0) = (row.number("c"), row.number("nu0"));
-        effort.experiment(family, number, |share| {
+        effort.long().experiment(family, number, |share| {
             let measured = relaxation_length(share, albedo, nu0)?;
             Ok(vec![Check::new(format!("ν0, albedo {albedo}"), nu0, OTHERS * nu0, measured).binned()])
         })

@@ -28,6 +28,7 @@ pub(super) fn albedos(family: &'static str, effort: Effort) -> Result<Vec<Experi
         let incidence = if mu0 == "diffuse" { Incidence::Diffuse } else { Incidence::Beam(row.number("mu0")) };
         let mut setup = half_space(albedo, incidence);
         setup.bins.orders = 3;
+        let effort = if albedo > 0.99 { effort.long() } else { effort };
         effort.experiment(family, number, |share| {
             let check = |column: &str, accuracy, measured| {
                 Check::new(format!("{column}, albedo {albedo}, mu0 {mu0}"), row.number(column), accuracy, measured)

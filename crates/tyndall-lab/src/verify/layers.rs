@@ -21,6 +21,7 @@ pub(super) fn slabs(family: &'static str, effort: Effort) -> Result<Vec<Experime
         for (incidence, what) in [(Incidence::Beam(1.0), "coll"), (Incidence::Diffuse, "diff")] {
             let setup = Setup::one(substance, tau, incidence);
             let number = 2 * number + usize::from(what == "diff");
+            let effort = if tau > 10.0 && albedo > 0.99 { effort.long() } else { effort };
             let name = |quantity: &str| format!("{quantity}_{what}, albedo {albedo}, tau {tau}, g {g}, n {n}");
             let expected = |quantity: &str| row.number(&format!("{quantity}_{what}"));
             experiments.push(effort.experiment(family, number, |share| {
@@ -52,7 +53,7 @@ fn mcml(row: &Row) -> Setup {
 const MCML_TOTALS: &str = include_str!("../../data/mcml_totals_vs_adding.csv");
 
 pub(super) fn mcml_totals(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
-    let table = rows(MCML_TOTALS);
+    let (table, effort) = (rows(MCML_TOTALS), effort.long());
     let experiment = |(number, row): (usize, &Row)| {
         let setup = mcml(row);
         let case = row.word("case");

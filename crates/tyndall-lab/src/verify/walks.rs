@@ -10,7 +10,7 @@ pub(super) fn moments(family: &'static str, effort: Effort) -> Result<Vec<Experi
     let table = rows(include_str!("../../data/random_walk_moments_hg.csv"));
     let experiment = |(number, (g, rows)): (usize, (&str, Vec<&Row>))| {
         let flights: Vec<u32> = rows.iter().map(|row| row.number("n") as u32).collect();
-        effort.experiment(family, number, |share| {
+        effort.long().experiment(family, number, |share| {
             let scene = share.scene(walk::scene(rows[0].number("g"))?);
             let measured = walk::moments_in(&scene, &flights, share.photons, share.seed, |_| Verdict::GoOn);
             let checks = rows.iter().zip(measured).flat_map(|(row, m)| {

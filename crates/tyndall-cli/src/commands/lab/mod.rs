@@ -4,6 +4,7 @@ pub(crate) mod options;
 mod report;
 
 use std::{
+    io::Read,
     path::Path,
     process::ExitCode,
     time::{Duration, Instant},
@@ -11,6 +12,7 @@ use std::{
 
 use anyhow::{Context, ensure};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use tyndall_formats::film::save;
 use tyndall_lab::{
     ball, mci, point,
     run::{Estimate, Sums, Verdict},
@@ -37,6 +39,7 @@ pub(crate) fn run(instrument: &Instrument) -> anyhow::Result<ExitCode> {
         Instrument::Sphere(o) => &o.measurement,
         Instrument::Walk(o) => &o.measurement,
     };
+    measurement.check_files()?;
     let reports = pool(measurement.threads)?.install(|| match instrument {
         Instrument::Slab(options) => slabs(options),
         Instrument::Point(options) => Ok(vec![point(options)?]),
@@ -79,6 +82,17 @@ fn tell(reports: &[Report], measurement: &Measurement) -> anyhow::Result<()> {
 }
 
 impl Measurement {
+    /// Whether the files could be written: better known before the experiment than after it.
+    fn check_files(&self) -> anyhow::Result<()> {
+        for file in [&self.json, &self.csv, &self.plot].into_iter().flatten().filter(|file| **file != Path::new("-")) {
+            save::check(file)?;
+        }
+        match &self.plot {
+            Some(file) => report::check_plot(file),
+            None => Ok(()),
+        }
+    }
+
     /// Photons at most, if the experiment itself says nothing.
     fn most_photons(&self, own: Option<u64>) -> u64 {
         let unlimited = self.time.is_some() || self.error.is_some();
@@ -126,9 +140,12 @@ fn slabs(options: &SlabOptions) -> anyhow::Result<Vec<Report>> {
         };
         return Ok(vec![slab(title, &setup(options), None, &options.measurement)?]);
     };
-    let size = std::fs::metadata(file).with_context(|| format!("cannot read {}", file.display()))?.len();
-    ensure!(size <= LARGEST_FILE, "{}: {size} bytes are too many for an input file of MCML", file.display());
-    let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+    // Devices and pipes do not tell their size: no more is read than an input file can have.
+    let cannot_read = || format!("cannot read {}", file.display());
+    let mut bytes = Vec::new();
+    let mut source = std::fs::File::open(file).with_context(cannot_read)?.take(LARGEST_FILE + 1);
+    source.read_to_end(&mut bytes).with_context(cannot_read)?;
+    ensure!(bytes.len() as u64 <= LARGEST_FILE, "{} is too long for an input file of MCML", file.display());
     let text = std::str::from_utf8(&bytes).with_context(|| format!("{} is not text", file.display()))?;
     let runs = mci::read(text).with_context(|| format!("{} is no input file of MCML 1.2", file.display()))?;
     let report = |run: mci::Run| slab(run.output.clone(), &run.setup, Some(run.photons), &options.measurement);
@@ -166,6 +183,8 @@ fn slab(title: String, setup: &Setup, own: Option<u64>, measurement: &Measuremen
     ];
     let exact = Estimate { mean: m.first_surface, standard_error: 0.0 };
     figures.push(figure("first surface alone", "", exact));
+    let collisions = Estimate { mean: m.collisions as f64 / m.photons as f64, standard_error: 0.0 };
+    figures.push(figure("collisions", "a photon, counted", collisions));
     figures.extend(m.absorbed.iter().enumerate().map(|(i, a)| figure(format!("absorbed in layer {}", i + 1), "", *a)));
     Ok(Report { title, photons: m.photons, figures, curves: curves(setup, &m) })
 }

@@ -117,6 +117,14 @@ impl Report {
     }
 }
 
+/// Whether a name is one that plots can have.
+pub(crate) fn check_plot(path: &Path) -> anyhow::Result<()> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("svg" | "png") => Ok(()),
+        _ => bail!("{}: plots are written as .svg or .png", path.display()),
+    }
+}
+
 /// Okabe–Ito 2008: told apart by every eye.
 const COLORS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115)];
 

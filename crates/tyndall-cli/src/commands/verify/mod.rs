@@ -6,6 +6,7 @@ mod plots;
 use std::{fmt::Write, process::ExitCode, time::Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use tyndall_formats::film::save;
 use tyndall_lab::verify::{Check, Effort, Experiment, FamilyJudgement, Judgement, ORACLES, Oracle, judge};
 
 use crate::{args::VerifyOptions, outputs::write_text, threads::pool};
@@ -26,6 +27,9 @@ pub(crate) fn run(options: &VerifyOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     // What cannot be written had better be known before half an hour is spent.
+    if let Some(to) = options.json.as_deref().filter(|to| *to != "-") {
+        save::check(to)?;
+    }
     let page = options.report.as_deref().map(Page::prepare).transpose()?;
     let start = Instant::now();
     let experiments = pool(options.threads)?.install(|| measure(&oracles, options))?;

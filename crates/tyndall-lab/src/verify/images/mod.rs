@@ -31,7 +31,9 @@ pub(super) struct Named {
 pub(super) enum Can {
     /// Surfaces, of lights that a ray can meet: all of them.
     Surfaces,
-    /// Surfaces, of lights so wide that a point of them drawn at random is hardly ever near.
+    /// Surfaces around the camera on all sides: there the versions 0 of the lecture never end.
+    ClosedSurfaces,
+    /// The same, of lights so wide that a point of them drawn at random is hardly ever near.
     WideLamps,
     /// Surfaces, of lights without extent too.
     PointsOnSurfaces,
@@ -39,6 +41,8 @@ pub(super) enum Can {
     Media,
     /// Media, of lights without extent too.
     PointsInMedia,
+    /// What the workhorse is asked alone.
+    Everything,
     /// Media that glow, which the lecture's do not, or that scatter much or with a peak, where its weights have no finite
     /// variance.
     AllMedia,
@@ -48,16 +52,18 @@ pub(super) enum Can {
 fn integrators(can: Can) -> Vec<Named> {
     let lecture = |version: Lecture| Named { name: version.name().to_owned(), integrator: Box::new(version) };
     let gathers = |version: &Lecture| matches!(version, Lecture::SurfaceV1 | Lecture::VolumeV1);
+    let endless = |version: &Lecture| matches!(version, Lecture::SurfaceV0 | Lecture::VolumeV0);
     let versions = Lecture::ALL.into_iter().filter(|version| match can {
         Can::Surfaces => true,
-        Can::WideLamps => !gathers(version),
+        Can::ClosedSurfaces => !endless(version),
+        Can::WideLamps => !gathers(version) && !endless(version),
         Can::PointsOnSurfaces => gathers(version),
         Can::Media => version.sees_media(),
         Can::PointsInMedia => version.sees_media() && gathers(version),
-        Can::AllMedia => false,
+        Can::AllMedia | Can::Everything => false,
     });
-    let analog = Named { name: "analog".to_owned(), integrator: Box::new(Analog) };
-    [volpath(None), analog].into_iter().chain(versions.map(lecture)).collect()
+    let analog = (can != Can::Everything).then(|| Named { name: "analog".to_owned(), integrator: Box::new(Analog) });
+    std::iter::once(volpath(None)).chain(analog).chain(versions.map(lecture)).collect()
 }
 
 /// The workhorse, up to a number of scatterings.

@@ -27,7 +27,7 @@ fn enclosure(row: &Row) -> Option<(Can, Made<Scene>)> {
         "closed_enclosure_radiance" => {
             let rho = after(parameters, "rho=");
             // Weights of the lecture's roulette have no finite variance from ρ² = 0.9 on.
-            let can = if rho * rho < 0.9 { Can::Surfaces } else { Can::AllMedia };
+            let can = if rho * rho < 0.9 { Can::ClosedSurfaces } else { Can::AllMedia };
             let mut stage = Stage::seen(eye, target);
             let made = stage.shining_ball(Vec3::ZERO, 1.0, diffuse(rho), true);
             Some((can, made.and_then(|()| stage.scene())))
