@@ -59,7 +59,7 @@ fn a_medium_that_cannot_be_is_refused() {
     ] {
         desk.refuses(&["lab", "slab", "--layer", layer], words);
     }
-    desk.refuses(&["lab", "slab"], "--layer");
+    desk.refuses(&["lab", "slab"], "FILE.mci");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angle", "90"], "incidence");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--photons", "0"], "--photons");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--error", "nan"], "--error");
