@@ -1,12 +1,16 @@
 //! What a surface is made of, as the scene has it: spectra that become a [`Bsdf`] at the wavelengths of a path.
 
 mod coated;
+mod principled;
 
 pub use coated::{CoatedBase, CoatedMaterial};
+pub use principled::{BurleyTextures, PrincipledTextures, ThinTextures};
+
+use std::sync::Arc;
 
 use crate::{
     bsdf::{
-        Bsdf, Plastic, Sides, index_of_reflectance,
+        Bsdf, Plastic, RoughCoat, RoughPlastic, Sides, index_of_reflectance,
         microfacet::{Distribution, Shadowing},
     },
     relief::Relief,
@@ -80,6 +84,23 @@ pub enum Material {
         /// The sides that reflect.
         sides: Sides,
     },
+    /// A diffuse base under a rough coat.
+    RoughPlastic {
+        /// The coat.
+        coat: Arc<RoughCoat>,
+        /// Reflectance of the base [1].
+        reflectance: Texture,
+        /// Whether light between base and coat deepens the colour, or keeps its hue.
+        nonlinear: bool,
+        /// A factor on what the coat reflects [1].
+        tint: Texture,
+        /// The sides that reflect.
+        sides: Sides,
+    },
+    /// Burley's model of solids.
+    Principled(Box<PrincipledTextures>),
+    /// Burley's model of sheets.
+    PrincipledThin(Box<ThinTextures>),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Box<CoatedMaterial>),
     /// No material: light passes, and may enter another medium.
@@ -146,7 +167,7 @@ impl Roughness {
 
     /// The same model with microfacets after these laws.
     #[inline]
-    fn shape(&self, bsdf: Bsdf) -> Bsdf {
+    fn shape<'s>(&self, bsdf: Bsdf<'s>) -> Bsdf<'s> {
         bsdf.distributed(self.distribution, self.shadowing)
     }
 }
@@ -194,9 +215,9 @@ impl Metal {
 impl Material {
     /// The BSDF in the lanes of a path, whose lane `hero` decides where wavelengths part.
     #[inline]
-    pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+    pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf<'_> {
         match self {
-            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(reflectance.eval(at, wavelengths)).on(*sides),
+            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(share(reflectance, at, wavelengths)).on(*sides),
             Self::Conductor { metal, alpha, tint, sides } => {
                 let [x, y] = alpha.at(at);
                 let [eta, k] = metal.index(at, wavelengths);
@@ -213,10 +234,17 @@ impl Material {
                 Bsdf::diffuse_transmission(scaled(reflectance), scaled(transmittance))
             }
             Self::Plastic { eta, internal, reflectance, nonlinear, tint, sides } => {
-                Bsdf::Plastic(Plastic::new(*eta, *internal, reflectance.eval(at, wavelengths), *nonlinear))
+                Bsdf::Plastic(Plastic::new(*eta, *internal, share(reflectance, at, wavelengths), *nonlinear))
                     .tinted(tint.eval(at, wavelengths), Lanes::ONE)
                     .on(*sides)
             }
+            Self::RoughPlastic { coat, reflectance, nonlinear, tint, sides } => {
+                Bsdf::RoughPlastic(RoughPlastic::new(coat, reflectance.eval(at, wavelengths), *nonlinear))
+                    .tinted(tint.eval(at, wavelengths), Lanes::ONE)
+                    .on(*sides)
+            }
+            Self::Principled(textures) => textures.bsdf(at, wavelengths),
+            Self::PrincipledThin(textures) => textures.bsdf(at, wavelengths),
             Self::Coated(coated) => coated.bsdf(at, wavelengths, hero),
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
             Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } | Self::Embossed { .. } => Bsdf::Null,
@@ -226,7 +254,7 @@ impl Material {
     /// The BSDF of the boundary between two bodies, `eta` the index inside over that outside: with the roughness and the
     /// tints of a dielectric, or smooth and clear.
     #[inline]
-    pub fn bsdf_between(&self, eta: f32, at: &TexturePoint, wavelengths: &Wavelengths) -> Bsdf {
+    pub fn bsdf_between(&self, eta: f32, at: &TexturePoint, wavelengths: &Wavelengths) -> Bsdf<'_> {
         let Self::Dielectric { alpha, reflection_tint, transmission_tint, .. } = self else {
             return Bsdf::dielectric(eta, 0.0, 0.0);
         };
@@ -253,6 +281,12 @@ impl Material {
             _ => false,
         }
     }
+}
+
+/// What a texture reflects, held in 0 to 1: textures that are scaled can have more.
+#[inline]
+fn share(texture: &Texture, at: &TexturePoint, wavelengths: &Wavelengths) -> Lanes {
+    texture.eval(at, wavelengths).clamp(0.0, 1.0)
 }
 
 impl Index {

@@ -4,8 +4,10 @@
 //! their names are pieces that scenes include. A scene of Mitsuba is rendered by Mitsuba 3 too ([`Theirs`]); a scene of pbrt
 //! is compared with the scene of the same name in Mitsuba's language, if there is one: they say the same in other words.
 //! The rows are kept in `target/words/report.json`, so that a call with `--filter` renews only some; the page is
-//! `docs/src/pictures.md`. The call fails if a scene does not render, or if two renderers differ.
+//! `docs/src/pictures.md`. The call fails if a scene does not render, or if two renderers differ and the reason is not known:
+//! known ones stand in `scenes/words/differences.tsv` ([`known`]).
 
+mod known;
 mod page;
 
 use std::collections::BTreeMap;
@@ -24,6 +26,7 @@ use crate::collections::theirs::Theirs;
 use crate::peers::image::Image;
 use crate::peers::tyndall::Tyndall;
 use crate::shell::root;
+use known::Known;
 
 /// Independent renders of each side.
 const RUNS: u32 = 4;
@@ -88,6 +91,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let studio = Studio { work: work.clone(), pictures, spp: options.spp, ours, theirs: Theirs::install(limits)? };
 
     let scenes = scenes(&home)?;
+    let known = Known::read(&home.join("differences.tsv"))?;
     ensure!(scenes.keys().any(|name| name.contains(&options.filter)), "no scene's name contains `{}`", options.filter);
     let file = work.join("report.json");
     let mut rows: BTreeMap<String, Row> = read(&file)?.into_iter().map(|row| (row.name.clone(), row)).collect();
@@ -107,8 +111,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     }
     let rows: Vec<Row> = rows.into_values().collect();
     let level = testkit::sidak(FALSE_ALARM, rows.iter().flat_map(Row::comparisons).count().max(1));
-    std::fs::write(root().join("docs/src/pictures.md"), page::page(&rows, level))?;
-    let differing = rows.iter().filter(|row| row.comparisons().any(|found| found.p < level));
+    std::fs::write(root().join("docs/src/pictures.md"), page::page(&rows, level, &known))?;
+    let differing = rows.iter().filter(|row| row.comparisons().any(|found| found.p < level) && !known.explain(row));
     broken.extend(differing.map(|row| format!("{}: the pictures differ", row.name)));
     if !broken.is_empty() {
         bail!("{}", broken.join("\n"));

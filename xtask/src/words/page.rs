@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::Row;
+use super::{Row, known::Known};
 
 /// The page; `level` is the probability below which two pictures differ.
-pub(super) fn page(rows: &[Row], level: f64) -> String {
+pub(super) fn page(rows: &[Row], level: f64, known: &Known) -> String {
     let compared = rows.iter().filter(|row| row.with_mitsuba.is_some()).count();
     let twins = rows.iter().filter(|row| row.with_twin.is_some()).count();
     let mut text = format!(
@@ -30,7 +30,10 @@ pub(super) fn page(rows: &[Row], level: f64) -> String {
             let told = |found: &Option<_>| {
                 found.as_ref().map_or(String::new(), |found: &crate::collections::comparison::Comparison| {
                     let (word, sentence) = found.told(level);
-                    format!("{word}: {sentence}")
+                    match known.reason(&row.name).filter(|_| found.p < level) {
+                        Some(reason) => format!("{word}: {sentence}. {reason}"),
+                        None => format!("{word}: {sentence}"),
+                    }
                 })
             };
             let _ = writeln!(
@@ -59,7 +62,7 @@ mod tests {
         let differs = Comparison { p: 1e-9, ..found.clone() };
         let languages = vec!["pbrt".to_owned(), "Mitsuba".to_owned()];
         let row = Row { name: "bsdf-a".to_owned(), languages, with_mitsuba: Some(found), with_twin: Some(differs) };
-        let page = page(&[row], 0.01);
+        let page = page(&[row], 0.01, &Known::default());
         assert!(page.contains("## bsdf\n"), "{page}");
         assert!(
             page.contains(

@@ -1,21 +1,34 @@
 //! From what the user wrote to what is rendered: reads meshes and images, converts units, checks the physics.
 
 mod camera;
+mod emitters;
 mod lights;
 pub(crate) mod made;
 mod materials;
-mod media;
-mod shapes;
-mod spectra;
+pub(crate) mod media;
+mod meshes;
+mod painted;
+mod principled;
+pub(crate) mod shapes;
+pub(crate) mod spectra;
 mod textures;
 
 #[cfg(test)]
 mod tests;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DMat4;
-use tyndall::{film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode, texture::Texture};
+use tyndall::{
+    bsdf::RoughCoat,
+    film::Crop,
+    light::LightTable,
+    math::Transform,
+    scene::Scene,
+    spectrum::ColorMode,
+    texture::{Texture, attribute::Painted},
+};
 
 use crate::{
     desc::{FilmDesc, MaterialId, MediumId, SceneDesc, TextureId},
@@ -23,6 +36,7 @@ use crate::{
     source::{SourceMap, Span},
 };
 use made::Made;
+use meshes::Meshes;
 use spectra::Measure;
 use textures::Pictures;
 
@@ -46,6 +60,11 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    /// Coats of rough plastics, each tabulated once.
+    coats: Vec<Arc<RoughCoat>>,
+    meshes: Meshes,
+    /// Colours of meshes: of vertices, and of faces.
+    painted: [Arc<Painted>; 2],
     made: Made,
 }
 
@@ -56,6 +75,9 @@ impl<'a> Builder<'a> {
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            coats: Vec::new(),
+            meshes: Meshes::new(desc),
+            painted: [Arc::default(), Arc::default()],
             made: Made::new(desc.materials.len()),
         }
     }
@@ -63,9 +85,16 @@ impl<'a> Builder<'a> {
 
 impl Builder<'_> {
     fn scene(&mut self, color: ColorMode) -> Option<Scene> {
+        if self.desc.film.color() == ColorMode::Spectral && color != ColorMode::Spectral {
+            return self.fail(
+                SceneError::at(self.desc.film.span, "this film records wavelengths, and the render has colours only")
+                    .help("render it with --color spectral"),
+            );
+        }
+        // First the shapes: textures may show the colours of meshes.
+        let shapes = self.shapes();
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
-        let shapes = self.shapes();
         let lights = self.lights();
         let camera = shapes.as_ref().and_then(|shapes| self.camera(shapes));
         let mut materials = materials?;

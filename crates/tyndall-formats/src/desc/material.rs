@@ -2,7 +2,7 @@
 
 use tyndall::relief::Rule;
 
-use super::{MaterialId, Span, Spanned, SpectrumDesc, Varying};
+use super::{MaterialId, PrincipledDesc, PrincipledThinDesc, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,9 +72,15 @@ pub enum MaterialKind {
         reflectance: Spanned<Varying>,
         /// Whether light between base and coat deepens the colour.
         nonlinear: bool,
+        /// Roughness of the coat, the same everywhere and in all directions; `None` where it is smooth.
+        roughness: Option<RoughnessDesc>,
         /// Factor on what the coat reflects, if not 1.
         tint: Option<Spanned<Varying>>,
     },
+    /// Burley's model of solids (Mitsuba).
+    Principled(Box<PrincipledDesc>),
+    /// Burley's model of sheets (Mitsuba).
+    PrincipledThin(Box<PrincipledThinDesc>),
     /// A base under a coat of a dielectric (pbrt).
     Coated(Box<CoatedDesc>),
     /// No surface at all: a boundary of media that light passes unchanged.

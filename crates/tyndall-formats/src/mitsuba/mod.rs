@@ -22,6 +22,7 @@ mod medium;
 mod number;
 mod object;
 mod parameters;
+mod principled;
 mod scene;
 mod shape;
 mod spectrum;
@@ -29,6 +30,11 @@ mod texture;
 mod transform;
 mod tree;
 mod words;
+
+pub(crate) use aov::word as layer_word;
+pub(crate) use bsdf::INDICES;
+pub(crate) use emitter::facing;
+pub(crate) use transform::look_at;
 
 use std::path::Path;
 

@@ -29,7 +29,7 @@ impl CameraDesc {
 
 impl Reader {
     pub(super) fn camera(&mut self, mut s: Statement<'_>) {
-        let to_world = self.state.now.ctm.inverse();
+        let to_world = self.state.now.inverse;
         self.state.name("camera", to_world);
         let name = s.names[0].clone();
         if !CAMERAS.contains(&&*name.value) {
@@ -72,7 +72,7 @@ fn frame(p: &mut Params) -> FrameDesc {
     {
         p.error(SceneError::at(window.span, "this screen window is empty").help("it is [ x_min x_max y_min y_max ]"));
     }
-    FrameDesc { axis: FovAxis::Smaller, aspect, screen_window }
+    FrameDesc { aspect, screen_window, ..FrameDesc::of_film(FovAxis::Smaller) }
 }
 
 fn perspective(p: &mut Params) -> CameraKind {

@@ -16,7 +16,7 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 9] = [
+const MATERIALS: [&str; 10] = [
     "coatedconductor",
     "coateddiffuse",
     "conductor",
@@ -25,9 +25,10 @@ const MATERIALS: [&str; 9] = [
     "diffusetransmission",
     "interface",
     "mix",
+    "subsurface",
     "thindielectric",
 ];
-const LATER_MATERIALS: [&str; 3] = ["hair", "measured", "subsurface"];
+const LATER_MATERIALS: [&str; 2] = ["hair", "measured"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -44,6 +45,7 @@ impl Reader {
         let p = self.params("material", &mut s, &defaults);
         let desc = self.material_of(s.whole, None, &name, p);
         let id = MaterialId(self.materials.push(s.whole, desc));
+        self.fillings.settle(id);
         self.state.now.material = Some(Spanned::new(id, s.whole));
     }
 
@@ -59,7 +61,7 @@ impl Reader {
         }
         let kind = kind.unwrap_or(Spanned::new("interface".into(), name.span));
         let desc = self.material_of(s.whole, Some(name.value.to_string()), &kind, p);
-        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(drop));
+        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(|id| r.fillings.settle(MaterialId(id))));
     }
 
     pub(super) fn use_material(&mut self, name: &Spanned<Cow<'_, str>>) {
@@ -84,6 +86,7 @@ impl Reader {
             "coateddiffuse" => coated_diffuse(&mut p, &self.textures),
             "coatedconductor" => coated_conductor(&mut p, &self.textures),
             "mix" => self.mix(&mut p),
+            "subsurface" => self.subsurface(span, &mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -148,11 +151,7 @@ fn diffuse(p: &mut Params, textures: &Textures) -> MaterialKind {
 }
 
 fn conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
-    MaterialKind::Conductor {
-        optics: optics(p, textures, ["eta", "k"]),
-        roughness: roughness(p, textures, ROUGHNESS),
-        tint: None,
-    }
+    MaterialKind::Conductor { optics: optics(p, textures, ["eta", "k"]), roughness: rough(p, textures), tint: None }
 }
 
 /// How a metal reflects, whose complex index has these names.
@@ -178,32 +177,34 @@ fn optics(p: &mut Params, textures: &Textures, [eta, k]: [&'static str; 2]) -> C
 
 fn coated_diffuse(p: &mut Params, textures: &Textures) -> MaterialKind {
     let base = BaseDesc::Diffuse(p.varying("reflectance", 0.5, textures));
-    coated(p, textures, "eta", ROUGHNESS, base)
+    let roughness = rough(p, textures);
+    coated(p, textures, "eta", roughness, base)
 }
 
 fn coated_conductor(p: &mut Params, textures: &Textures) -> MaterialKind {
-    let names = ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"];
-    let base = BaseDesc::Conductor {
-        optics: optics(p, textures, ["conductor.eta", "conductor.k"]),
-        roughness: roughness(p, textures, names),
-    };
-    let names = ["interface.roughness", "interface.uroughness", "interface.vroughness"];
-    coated(p, textures, "interface.eta", names, base)
+    let remap = remap(p);
+    let [base, top] = [
+        ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"],
+        ["interface.roughness", "interface.uroughness", "interface.vroughness"],
+    ]
+    .map(|names| roughness(p, textures, names, remap));
+    let optics = optics(p, textures, ["conductor.eta", "conductor.k"]);
+    coated(p, textures, "interface.eta", top, BaseDesc::Conductor { optics, roughness: base })
 }
 
-/// The coat, whose index and roughness have these names.
+/// The coat, whose index has this name.
 fn coated(
     p: &mut Params,
     textures: &Textures,
     eta: &'static str,
-    roughness_names: [&'static str; 3],
+    roughness: RoughnessDesc,
     base: BaseDesc,
 ) -> MaterialKind {
     let thickness = p.amount("thickness", textures);
     let g = p.number("g", textures, |_| true);
     MaterialKind::Coated(Box::new(CoatedDesc {
         eta: p.spectrum_or_float(eta, SpectrumDesc::Constant(1.5)),
-        roughness: roughness(p, textures, roughness_names),
+        roughness,
         thickness: thickness.unwrap_or(Spanned::new(Varying::constant(0.01), p.span)),
         albedo: p.varying("albedo", 0.0, textures),
         g: g.unwrap_or(Spanned::new(Varying::constant(0.0), p.span)),
@@ -225,7 +226,7 @@ fn few(p: &mut Params, name: &'static str, default: u16, least: u32) -> u16 {
 fn dielectric(p: &mut Params, textures: &Textures) -> MaterialKind {
     MaterialKind::Dielectric {
         eta: p.spectrum_or_float("eta", SpectrumDesc::Constant(1.5)),
-        roughness: roughness(p, textures, ROUGHNESS),
+        roughness: rough(p, textures),
         reflection_tint: None,
         transmission_tint: None,
     }
@@ -250,13 +251,24 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
 /// The names of a roughness: along both tangents, along the first, along the second.
 const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
 
-fn roughness(p: &mut Params, textures: &Textures, [both, u, v]: [&'static str; 3]) -> RoughnessDesc {
+/// The roughness of a material with one surface.
+pub(super) fn rough(p: &mut Params, textures: &Textures) -> RoughnessDesc {
+    let remap = remap(p);
+    roughness(p, textures, ROUGHNESS, remap)
+}
+
+/// Whether roughness is that of the eye or of the model, of all surfaces of a material.
+fn remap(p: &mut Params) -> bool {
+    p.boolean("remaproughness", true).value
+}
+
+fn roughness(p: &mut Params, textures: &Textures, [both, u, v]: [&'static str; 3], remap: bool) -> RoughnessDesc {
     let smooth = Spanned::new(Varying::constant(0.0), p.span);
     let both = p.amount(both, textures).unwrap_or(smooth);
     RoughnessDesc {
         u: p.amount(u, textures).unwrap_or_else(|| both.clone()),
         v: p.amount(v, textures).unwrap_or(both),
-        remap: p.boolean("remaproughness", true).value,
+        remap,
         distribution: MicrofacetKind::Ggx,
         shadowing: ShadowingKind::Correlated,
     }

@@ -56,7 +56,8 @@ impl Defect {
                 Fault::MeanCosine => {
                     if let Phase::HenyeyGreenstein(model) = medium.phase {
                         // A smaller mean cosine is within the range that the model had.
-                        medium.phase = Phase::henyey_greenstein(model.mean_cosine() * less).unwrap_or(medium.phase);
+                        medium.phase = Phase::henyey_greenstein(model.mean_cosine() * less)
+                            .unwrap_or_else(|_| medium.phase.clone());
                     }
                 }
                 Fault::Index | Fault::Fresnel | Fault::Reflectance => {}

@@ -17,24 +17,32 @@
 pub mod fresnel;
 pub mod microfacet;
 
+mod burley;
 mod coated;
 mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
 mod plastic;
+mod principled;
+mod principled_thin;
 mod rough_conductor;
 mod rough_dielectric;
+mod rough_plastic;
 mod thin_dielectric;
 
+pub use burley::Burley;
 pub use coated::{Base, Coated};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
 pub use plastic::{Plastic, internal_reflectance};
+pub use principled::{Principled, PrincipledFixed};
+pub use principled_thin::{PrincipledThin, ThinRates};
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::{RoughCoat, RoughPlastic};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
@@ -101,9 +109,9 @@ pub struct BsdfSample {
     pub eta: f32,
 }
 
-/// A model of a surface. The methods only forward.
+/// A model of a surface. The methods only forward. Tables are the scene's: a model refers to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Bsdf {
+pub enum Bsdf<'s> {
     /// Lambert's law.
     Diffuse(Diffuse),
     /// A polished metal.
@@ -120,13 +128,19 @@ pub enum Bsdf {
     DiffuseTransmission(DiffuseTransmission),
     /// A diffuse base under a smooth coat.
     Plastic(Plastic),
+    /// A diffuse base under a coat with microfacets.
+    RoughPlastic(RoughPlastic<'s>),
+    /// Burley's model of solids.
+    Principled(Principled<'s>),
+    /// Burley's model of sheets.
+    PrincipledThin(PrincipledThin<'s>),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Coated),
     /// No surface at all: a mere boundary of media.
     Null,
 }
 
-impl Bsdf {
+impl Bsdf<'_> {
     /// Lambert's law on both sides.
     pub fn diffuse(reflectance: Lanes) -> Self {
         Self::Diffuse(Diffuse { reflectance, sides: Sides::Both })
@@ -179,6 +193,7 @@ impl Bsdf {
             Self::Diffuse(model) => model.reflectance *= reflectance,
             Self::Conductor(model) => model.reflectance *= reflectance,
             Self::Plastic(model) => model.reflectance *= reflectance,
+            Self::RoughPlastic(model) => model.reflectance *= reflectance,
             Self::RoughConductor(model) => model.metal.reflectance *= reflectance,
             Self::Dielectric(model) => model.tint(reflectance, transmittance),
             Self::RoughDielectric(model) => model.interface.tint(reflectance, transmittance),
@@ -190,7 +205,8 @@ impl Bsdf {
                 model.reflectance *= reflectance;
                 model.transmittance *= transmittance;
             }
-            Self::Coated(_) | Self::Null => {}
+            // Their colours tint them.
+            Self::Coated(_) | Self::Principled(_) | Self::PrincipledThin(_) | Self::Null => {}
         }
         self
     }
@@ -217,6 +233,9 @@ impl Bsdf {
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
             | Self::Plastic(_)
+            | Self::RoughPlastic(_)
+            | Self::Principled(_)
+            | Self::PrincipledThin(_)
             | Self::Coated(_)
             | Self::Null => return self,
         };
@@ -232,10 +251,13 @@ impl Bsdf {
             Self::Conductor(model) => model.sides = sides,
             Self::RoughConductor(model) => model.metal.sides = sides,
             Self::Plastic(model) => model.sides = sides,
+            Self::RoughPlastic(model) => model.sides = sides,
             Self::Dielectric(_)
             | Self::RoughDielectric(_)
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
+            | Self::Principled(_)
+            | Self::PrincipledThin(_)
             | Self::Coated(_)
             | Self::Null => {}
         }
@@ -251,6 +273,9 @@ impl Bsdf {
             Self::RoughDielectric(model) => model.eval(wo, wi),
             Self::DiffuseTransmission(model) => model.eval(wo, wi),
             Self::Plastic(model) => model.eval(wo, wi),
+            Self::RoughPlastic(model) => model.eval(wo, wi),
+            Self::Principled(model) => model.eval(wo, wi),
+            Self::PrincipledThin(model) => model.eval(wo, wi),
             Self::Coated(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
@@ -265,6 +290,9 @@ impl Bsdf {
             Self::RoughDielectric(model) => model.pdf(wo, wi),
             Self::DiffuseTransmission(model) => model.pdf(wo, wi),
             Self::Plastic(model) => model.pdf(wo, wi),
+            Self::RoughPlastic(model) => model.pdf(wo, wi),
+            Self::Principled(model) => model.pdf(wo, wi),
+            Self::PrincipledThin(model) => model.pdf(wo, wi),
             Self::Coated(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
@@ -282,6 +310,9 @@ impl Bsdf {
             Self::ThinDielectric(model) => model.sample(wo, u_lobe),
             Self::DiffuseTransmission(model) => model.sample(wo, u_lobe, u),
             Self::Plastic(model) => model.sample(wo, u_lobe, u),
+            Self::RoughPlastic(model) => model.sample(wo, u_lobe, u),
+            Self::Principled(model) => model.sample(wo, u_lobe, u),
+            Self::PrincipledThin(model) => model.sample(wo, u_lobe, u),
             Self::Coated(model) => model.sample(wo, u_lobe, u),
             Self::Null => Some(straight_on(wo)),
         }
@@ -301,17 +332,24 @@ impl Bsdf {
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {
-            Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) | Self::Plastic(_) | Self::Coated(_) => {
-                false
-            }
+            Self::Diffuse(_)
+            | Self::Conductor(_)
+            | Self::RoughConductor(_)
+            | Self::Plastic(_)
+            | Self::RoughPlastic(_)
+            | Self::Coated(_) => false,
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),
             Self::DiffuseTransmission(model) => !model.transmittance.is_zero(),
-            Self::Null => true,
+            Self::Principled(model) => model.transmits(),
+            Self::PrincipledThin(_) | Self::Null => true,
         }
     }
 }
+
+/// A vertex of every path holds one: no model may make it bigger for all (keep tables and constants in the scene).
+const _: () = assert!(size_of::<Bsdf>() <= 112);
 
 /// A complex index \[1\] with this reflectance at normal incidence: 1 and `k = 2√r / √(1 − r)`, `r` in [0, 0.9999] (pbrt's
 /// parameter `reflectance`).

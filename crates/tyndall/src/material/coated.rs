@@ -1,9 +1,9 @@
 //! A base under a coat, as the scene has it.
 
-use super::{Index, Metal, Roughness};
+use super::{Index, Metal, Roughness, share};
 use crate::{
     bsdf::{Base, Bsdf, Coated},
-    spectrum::{Lanes, Wavelengths},
+    spectrum::Wavelengths,
     texture::{Texture, TexturePoint},
 };
 
@@ -41,13 +41,13 @@ pub enum CoatedBase {
         /// How it reflects where there is no coat.
         metal: Metal,
         /// Its microfacets, after Trowbridge and Reitz, where it is rough.
-        alpha: Roughness,
+        alpha: Box<Roughness>,
     },
 }
 
 impl CoatedMaterial {
     /// The BSDF in the lanes of a path, with the index of the coat at the wavelength of lane `hero`.
-    pub(super) fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+    pub(super) fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf<'static> {
         let eta = self.eta.at(wavelengths, hero);
         let [alpha_x, alpha_y] = self.alpha.at(at);
         Bsdf::Coated(Coated {
@@ -76,8 +76,4 @@ impl CoatedBase {
             }
         }
     }
-}
-
-fn share(texture: &Texture, at: &TexturePoint, wavelengths: &Wavelengths) -> Lanes {
-    texture.eval(at, wavelengths).map(|v| v.clamp(0.0, 1.0))
 }

@@ -46,7 +46,13 @@ pub enum Skin {
 impl Skin {
     /// The BSDF; [`Bsdf::Null`] where nothing is.
     #[inline]
-    pub fn bsdf(self, material: &Material, hit: &Interaction, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+    pub fn bsdf<'s>(
+        self,
+        material: &'s Material,
+        hit: &Interaction,
+        wavelengths: &Wavelengths,
+        hero: usize,
+    ) -> Bsdf<'s> {
         match self {
             Self::Open => Bsdf::Null,
             Self::Written => material.bsdf(&hit.into(), wavelengths, hero),

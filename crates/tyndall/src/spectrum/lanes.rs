@@ -86,6 +86,13 @@ impl Lanes {
         self.0.is_finite()
     }
 
+    /// Each lane, held between `low` and `high`.
+    #[inline]
+    #[must_use]
+    pub fn clamp(self, low: f32, high: f32) -> Self {
+        Self(self.0.clamp(Vec4::splat(low), Vec4::splat(high)))
+    }
+
     /// Each lane through `f`.
     #[must_use]
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {

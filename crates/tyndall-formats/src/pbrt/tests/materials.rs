@@ -2,11 +2,22 @@
 
 use std::path::Path;
 
-use tyndall::{material::Material, spectrum::ColorMode};
+use tyndall::{
+    bsdf::Bsdf,
+    material::Material,
+    math::{Vec2, Vec3},
+    relief::Rule,
+    spectrum::{ColorMode, Lanes, Wavelengths},
+    texture::TexturePoint,
+};
 
 use super::{parse, world};
 use crate::build::build;
-use crate::desc::{MaterialKind, Varying};
+use crate::desc::{
+    BaseDesc, ConductorOptics, Encoding, MaterialKind, ReliefMap, SpectrumDesc, TextureId, TextureKind, Varying,
+    WrapKind,
+};
+use crate::source::Spanned;
 
 #[test]
 fn a_mix_names_two_materials_that_may_come_later() {
@@ -56,4 +67,81 @@ fn a_material_that_contains_itself_is_an_error() {
         doubled += &mix(&format!("{}", i + 1), &format!("{i}"));
     }
     assert_eq!(fault(&doubled), message);
+}
+
+/// A normal map comes before heights; heights may be a number, and stay in scene units. The even material is another one, and
+/// the name is that of both together.
+#[test]
+fn a_material_with_a_relief_is_another_material_embossed() {
+    let desc = world(
+        r#"Texture "bumps" "float" "fbm" MakeNamedMaterial "m" "string type" "conductor" "texture displacement" "bumps"
+        Material "dielectric" "float displacement" -2 "string normalmap" "n.png" Material "diffuse""#,
+    );
+    let kind = |kind: &MaterialKind| match kind {
+        MaterialKind::Embossed { of, map, rule: Rule::Pbrt } => Some((of.value, map.clone())),
+        _ => None,
+    };
+    let embossed: Vec<_> = desc.materials.iter().filter_map(|m| kind(&m.kind).zip(Some(m.name.as_deref()))).collect();
+    let [((metal, heights), Some("m")), ((glass, normals), None)] = &embossed[..] else { panic!("{embossed:?}") };
+    assert!(matches!(desc.material(*metal).unwrap().kind, MaterialKind::Conductor { .. }));
+    assert!(
+        matches!(heights, ReliefMap::Heights { texture, scale: 1.0 } if texture.value == Varying::Texture(TextureId(0)))
+    );
+    assert!(matches!(desc.material(*glass).unwrap().kind, MaterialKind::Dielectric { .. }));
+    let ReliefMap::Normals(Spanned { value: Varying::Texture(id), .. }) = normals else { panic!() };
+    let TextureKind::Image(image) = &desc.texture(*id).unwrap().kind else { panic!() };
+    assert_eq!((image.encoding, image.wrap), (Encoding::Linear, WrapKind::Repeat));
+}
+
+/// pbrt's defaults, and each parameter by its name.
+#[test]
+fn coats_have_the_defaults_of_pbrt() {
+    let desc = world(
+        r#"Material "coateddiffuse" Shape "sphere"
+        Material "coatedconductor" "rgb reflectance" [ 0.9 0.6 0.3 ] "float interface.roughness" 0.1
+          "float conductor.uroughness" 0.2 "float interface.eta" 1.7 "float thickness" 0.5 "rgb albedo" [ 0.1 0.2 0.3 ]
+          "float g" -0.5 "integer maxdepth" 100 "integer nsamples" 4 "bool remaproughness" false Shape "sphere""#,
+    );
+    let coat = |i: usize| match &desc.materials[i].kind {
+        MaterialKind::Coated(coat) => coat,
+        other => panic!("{other:?}"),
+    };
+    let number = |v: &crate::source::Spanned<Varying>| v.value.number().unwrap();
+    let paint = coat(0);
+    assert_eq!((&paint.eta.value, paint.roughness.alpha()), (&SpectrumDesc::Constant(1.5), Some([0.0, 0.0])));
+    assert_eq!([&paint.thickness, &paint.albedo, &paint.g].map(number), [0.01, 0.0, 0.0]);
+    assert_eq!((paint.max_depth, paint.walks), (10, 1));
+    assert!(matches!(&paint.base, BaseDesc::Diffuse(r) if number(r) == 0.5));
+    let metal = coat(1);
+    assert_eq!((&metal.eta.value, metal.roughness.alpha()), (&SpectrumDesc::Constant(1.7), Some([0.1, 0.1])));
+    assert_eq!([&metal.thickness, &metal.g].map(number), [0.5, -0.5]);
+    assert_eq!((metal.max_depth, metal.walks), (100, 4));
+    let BaseDesc::Conductor { optics: ConductorOptics::Reflectance(_), roughness } = &metal.base else { panic!() };
+    assert_eq!(roughness.alpha(), Some([0.2, 0.0]));
+    let (desc, sources) =
+        parse(Path::new("scene.pbrt"), r#"WorldBegin Material "coateddiffuse" "float g" -2 Shape "sphere""#).unwrap();
+    assert!(build(&desc, sources, ColorMode::Rgb).is_ok(), "g is held, as in pbrt");
+}
+
+#[test]
+fn coats_that_make_no_sense_are_told() {
+    let told = |text: &str| parse(Path::new("scene.pbrt"), &format!("WorldBegin {text}")).unwrap_err().to_string();
+    let both = told(r#"Material "coatedconductor" "rgb reflectance" [ 1 1 1 ] "spectrum conductor.k" "metal-Au-k""#);
+    assert!(both.contains("either \"reflectance\" or \"conductor.eta\" and \"conductor.k\""), "{both}");
+    assert!(told(r#"Material "coateddiffuse" "integer maxdepth" 70000"#).contains("at most 65535"));
+    assert!(told(r#"Material "coateddiffuse" "integer nsamples" 0"#).contains("at least 1"));
+    assert!(told(r#"Material "coateddiffuse" "float interface.eta" 2"#).contains("no parameter"));
+}
+
+/// pbrt cuts what a surface reflects, not the factors of a texture.
+#[test]
+fn a_texture_may_be_scaled_by_more_than_1() {
+    let text = r#"WorldBegin Texture "a" "spectrum" "scale" "rgb tex" [ 0.4 0.8 0.2 ] "float scale" 1.5
+        Material "diffuse" "texture reflectance" "a" Shape "sphere""#;
+    let (desc, sources) = parse(Path::new("scene.pbrt"), text).unwrap();
+    let (scene, _) = build(&desc, sources, ColorMode::Rgb).unwrap();
+    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z, part: None };
+    let Bsdf::Diffuse(diffuse) = scene.materials[0].bsdf(&at, &Wavelengths::Rgb, 0) else { panic!() };
+    let expected = Lanes::rgb(0.6, 1.0, 0.3);
+    assert!((diffuse.reflectance - expected).map(f32::abs).max_lane() < 1e-6, "{diffuse:?}");
 }

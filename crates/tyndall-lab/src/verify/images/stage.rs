@@ -179,7 +179,14 @@ impl Stage {
             object.emission = Emission::Whole(LightId(self.lights.len() as u32));
         }
         let radiance = Spectrum::constant(1.0);
-        self.lights.push(Light::Area(AreaLight { shape, radiance, luminance: 1.0, two_sided: false, opacity: 1.0 }));
+        self.lights.push(Light::Area(AreaLight {
+            shape,
+            radiance,
+            luminance: 1.0,
+            two_sided: false,
+            pattern: None,
+            opacity: 1.0,
+        }));
     }
 
     /// The same radiance from everywhere.
