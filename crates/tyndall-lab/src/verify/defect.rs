@@ -1,7 +1,7 @@
 //! Deliberate defects: what a verifier must not overlook.
 //!
 //! A defect is put into the scene of an experiment, where every medium and surface of the renderer gets it, while the
-//! expected numbers stay what they are. A table that nothing can fail proves nothing: the test `slow::every_defect_is_caught`
+//! expected numbers stay what they are. A table that nothing can fail proves nothing: the module `slow` of the tests
 //! puts each of the defects that a table claims to see into its experiments and demands that they fail.
 
 use tyndall::{
@@ -9,6 +9,7 @@ use tyndall::{
     phase::Phase,
     scene::Scene,
     spectrum::{Spectrum, Wavelengths},
+    texture::Texture,
 };
 
 /// What is wrong.
@@ -67,10 +68,8 @@ impl Defect {
             match (self.fault, material) {
                 (Fault::Index, Material::Dielectric { eta: Index::Constant(eta), .. }) => *eta *= more,
                 (Fault::Fresnel, Material::Dielectric { reflection_tint, .. }) => *reflection_tint = less.into(),
-                (Fault::Reflectance, Material::Diffuse { reflectance, .. }) => {
-                    if let tyndall::texture::Texture::Constant(spectrum) = reflectance {
-                        *spectrum = spectrum.clone().scaled(less);
-                    }
+                (Fault::Reflectance, Material::Diffuse { reflectance: Texture::Constant(spectrum), .. }) => {
+                    *spectrum = spectrum.clone().scaled(less);
                 }
                 _ => {}
             }

@@ -113,7 +113,7 @@ pub(super) fn criticality(family: &'static str, effort: Effort) -> Result<Vec<Ex
         for (j, (body, what)) in [(Body::Slab, "slab"), (Body::Ball, "sphere")].into_iter().enumerate() {
             let a = row.number("a_mfp");
             // Of the smallest ball so few photons reach the fundamental mode that they would say nothing.
-            if (2 * i + j) % effort.every != 0 || (body == Body::Ball && a < 0.5) {
+            if !(2 * i + j).is_multiple_of(effort.every) || (body == Body::Ball && a < 0.5) {
                 continue;
             }
             let expected = row.number(&format!("c_crit_{what}"));

@@ -68,7 +68,7 @@ pub(super) fn h_function(family: &'static str, effort: Effort) -> Result<Vec<Exp
         let mu = row.number("mu");
         for (j, albedo) in albedos.into_iter().enumerate() {
             let number = albedos.len() * i + j;
-            if number % effort.every != 0 {
+            if !number.is_multiple_of(effort.every) {
                 continue;
             }
             let value: f64 = albedo.parse().unwrap_or(f64::NAN);

@@ -67,6 +67,9 @@ pub(crate) fn enclosures(family: &'static str, effort: Effort) -> Made<Vec<Exper
 /// Reflectance of a floor.
 const FLOOR: f64 = 0.8;
 
+/// Puts a luminaire over a floor.
+type Lamp = fn(&mut Stage) -> Made<()>;
+
 /// A floor shines with ρE/π, and a luminaire of radiance 1 that fills the part F of what a place sees makes E = πF.
 pub(crate) fn floors(family: &'static str, effort: Effort) -> Made<Vec<Experiment>> {
     let table = rows(GROUND_TRUTHS);
@@ -75,7 +78,6 @@ pub(crate) fn floors(family: &'static str, effort: Effort) -> Made<Vec<Experimen
         row.map_or(f64::NAN, |row| row.number("value"))
     };
     let polygon = "irradiance_over_piL_polygon";
-    type Lamp = fn(&mut Stage) -> Made<()>;
     let cases: [(&str, f64, Lamp); 4] = [
         ("a ball", printed("irradiance_over_piL_sphere_light", "radius r"), |stage| {
             stage.shining_ball(Vec3::Z * 2.0, 0.5, diffuse(0.0), false)
@@ -148,9 +150,11 @@ fn fog() -> Made<Scene> {
     stage.scene()
 }
 
+/// Makes a world.
+type Make = fn() -> Made<Scene>;
+
 /// No closed form: all must agree with the workhorse.
 pub(crate) fn agreement(family: &'static str, effort: Effort) -> Made<Vec<Experiment>> {
-    type Make = fn() -> Made<Scene>;
     let cases: [(&str, Can, Make); 2] = [("a room", Can::Surfaces, room), ("fog", Can::Media, fog)];
     let experiment = |(number, (what, can, make)): (usize, (&str, Can, Make))| {
         effort.experiment(family, number, |share| {
