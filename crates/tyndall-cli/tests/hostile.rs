@@ -66,7 +66,7 @@ fn a_medium_that_cannot_be_is_refused() {
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angles", "100000000"], "bins");
     desk.refuses(&["lab", "point", "--albedo", "2"], "absorption coefficient");
     desk.refuses(&["lab", "point", "--albedo", "1"], "absorption coefficient");
-    desk.refuses(&["lab", "sphere", "--albedo", "0.5", "--radius", "-1"], "radius");
+    desk.refuses(&["lab", "sphere", "--albedo", "0.5", "--radius=-1"], "radius");
     desk.refuses(&["lab", "sphere", "--albedo", "0.5", "--radius", "nan"], "radius");
     desk.refuses(&["lab", "walk", "--g", "1"], "mean cosine");
     desk.refuses(&["lab", "walk", "--g", "0", "--flights", "0"], "flights");
