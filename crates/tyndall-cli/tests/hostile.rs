@@ -60,13 +60,13 @@ fn a_medium_that_cannot_be_is_refused() {
         desk.refuses(&["lab", "slab", "--layer", layer], words);
     }
     desk.refuses(&["lab", "slab"], "FILE.mci");
-    desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angle", "90"], "incidence");
+    desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angle", "91"], "incidence");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--photons", "0"], "--photons");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--error", "nan"], "--error");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angles", "100000000"], "bins");
     desk.refuses(&["lab", "point", "--albedo", "2"], "absorption coefficient");
     desk.refuses(&["lab", "point", "--albedo", "1"], "absorption coefficient");
-    desk.refuses(&["lab", "sphere", "--albedo", "0.5", "--radius", "-1"], "radius");
+    desk.refuses(&["lab", "sphere", "--albedo", "0.5", "--radius=-1"], "radius");
     desk.refuses(&["lab", "sphere", "--albedo", "0.5", "--radius", "nan"], "radius");
     desk.refuses(&["lab", "walk", "--g", "1"], "mean cosine");
     desk.refuses(&["lab", "walk", "--g", "0", "--flights", "0"], "flights");
@@ -79,7 +79,7 @@ fn an_input_file_that_cannot_be_is_refused_where_it_is_wrong() {
     let desk = Desk::new("mci");
     let write = |name: &str, bytes: &[u8]| fs::write(desk.0.join(name), bytes).unwrap();
     write("empty.mci", b"");
-    write("cut.mci", &RUN.as_bytes()[..RUN.len() - 8]);
+    write("cut.mci", &RUN.as_bytes()[..RUN.len() - 4]);
     write("binary.mci", &[0, 255, 128, 7]);
     write("zeros.mci", &[0; 4096]);
     write("layerless.mci", RUN.replace("6\n1\n", "6\n0\n").as_bytes());

@@ -74,9 +74,9 @@ fn measure(oracles: &[&Oracle], options: &VerifyOptions) -> anyhow::Result<Vec<E
         let figures = measured.iter().map(|experiment| experiment.checks.len()).sum::<usize>();
         let line = format!("{:<16} {figures:>4} figures, {:.1} s", oracle.name, start.elapsed().as_secs_f64());
         if progress.is_hidden() {
-            eprintln!("{line}")
+            eprintln!("{line}");
         } else {
-            progress.println(line)
+            progress.println(line);
         }
         experiments.extend(measured);
         progress.inc(1);

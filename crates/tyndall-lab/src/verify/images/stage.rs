@@ -197,9 +197,10 @@ impl Stage {
 
     /// Radiance from above, and from below.
     pub(super) fn half_sky(&mut self, above: f32, below: f32) {
-        let pixels = [[above; 3], [above; 3], [below; 3], [below; 3]];
-        let up = Transform::new(DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2)).unwrap_or(Transform::IDENTITY);
-        if let Ok(map) = EnvironmentMap::new(up, Projection::LatLong, 1, 4, &pixels, 1.0) {
+        // In the map's own space the left half of an equal-area square has x < 0; other maps blur the horizon.
+        let pixels = [[below; 3], [above; 3], [below; 3], [above; 3]];
+        let up = Transform::new(DMat4::from_rotation_y(-std::f64::consts::FRAC_PI_2)).unwrap_or(Transform::IDENTITY);
+        if let Ok(map) = EnvironmentMap::new(up, Projection::EqualArea, 2, 2, &pixels, 1.0) {
             self.lights.push(Light::Map(Box::new(map)));
         }
     }
