@@ -4,9 +4,12 @@ mod coated;
 
 pub use coated::{CoatedBase, CoatedMaterial};
 
+use std::sync::Arc;
+
 use crate::{
     bsdf::{
         Bsdf, Plastic, Sides, index_of_reflectance,
+        measured::{Measured, Tables},
         microfacet::{Distribution, Shadowing},
     },
     relief::Relief,
@@ -82,6 +85,13 @@ pub enum Material {
     },
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Box<CoatedMaterial>),
+    /// As it was measured.
+    Measured {
+        /// What was.
+        tables: Arc<Tables>,
+        /// The sides that reflect.
+        sides: Sides,
+    },
     /// No material: light passes, and may enter another medium.
     Null,
     /// No surface either: light passes and stays in its medium, and nothing shines (pbrt's `alpha`).
@@ -146,7 +156,7 @@ impl Roughness {
 
     /// The same model with microfacets after these laws.
     #[inline]
-    fn shape(&self, bsdf: Bsdf) -> Bsdf {
+    fn shape<'a>(&self, bsdf: Bsdf<'a>) -> Bsdf<'a> {
         bsdf.distributed(self.distribution, self.shadowing)
     }
 }
@@ -194,7 +204,7 @@ impl Metal {
 impl Material {
     /// The BSDF in the lanes of a path, whose lane `hero` decides where wavelengths part.
     #[inline]
-    pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+    pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf<'_> {
         match self {
             Self::Diffuse { reflectance, sides } => Bsdf::diffuse(share(reflectance, at, wavelengths)).on(*sides),
             Self::Conductor { metal, alpha, tint, sides } => {
@@ -218,6 +228,7 @@ impl Material {
                     .on(*sides)
             }
             Self::Coated(coated) => coated.bsdf(at, wavelengths, hero),
+            Self::Measured { tables, sides } => Bsdf::Measured(Measured::new(tables, wavelengths)).on(*sides),
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
             Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } | Self::Embossed { .. } => Bsdf::Null,
         }
@@ -226,7 +237,7 @@ impl Material {
     /// The BSDF of the boundary between two bodies, `eta` the index inside over that outside: with the roughness and the
     /// tints of a dielectric, or smooth and clear.
     #[inline]
-    pub fn bsdf_between(&self, eta: f32, at: &TexturePoint, wavelengths: &Wavelengths) -> Bsdf {
+    pub fn bsdf_between(&self, eta: f32, at: &TexturePoint, wavelengths: &Wavelengths) -> Bsdf<'_> {
         let Self::Dielectric { alpha, reflection_tint, transmission_tint, .. } = self else {
             return Bsdf::dielectric(eta, 0.0, 0.0);
         };

@@ -16,7 +16,7 @@ use tyndall::spectrum::Lanes;
 #[path = "models/fresnel.rs"]
 mod fresnel;
 /// Every model with its parameters in common and extreme settings.
-fn bsdfs() -> Vec<(&'static str, Bsdf)> {
+fn bsdfs() -> Vec<(&'static str, Bsdf<'static>)> {
     let ochre = Lanes::rgb(0.8, 0.5, 0.2);
     let (gold_eta, gold_k) = (Lanes::rgb(0.14, 0.37, 1.44), Lanes::rgb(3.98, 2.39, 1.60));
     vec![
@@ -72,22 +72,22 @@ fn bsdfs() -> Vec<(&'static str, Bsdf)> {
     ]
 }
 
-fn varnish() -> Bsdf {
+fn varnish() -> Bsdf<'static> {
     Bsdf::Plastic(Plastic::new(1.7, internal_reflectance(1.7), Lanes::rgb(0.9, 0.3, 0.1), true))
 }
 
-fn beckmann_mirror() -> Bsdf {
+fn beckmann_mirror() -> Bsdf<'static> {
     Bsdf::conductor(Lanes::ZERO, Lanes::ONE, 1.0, 0.3).distributed(Distribution::Beckmann, Shadowing::Correlated)
 }
 
 /// With Mitsuba's shadowing: Beckmann's law for glass, that of Trowbridge and Reitz for metal.
-fn separable(bsdf: Bsdf) -> Bsdf {
+fn separable(bsdf: Bsdf<'static>) -> Bsdf<'static> {
     let beckmann = matches!(bsdf, Bsdf::RoughDielectric(_));
     let law = if beckmann { Distribution::Beckmann } else { Distribution::TrowbridgeReitz };
     bsdf.distributed(law, Shadowing::Separable)
 }
 
-fn metal_on_the_outside() -> Bsdf {
+fn metal_on_the_outside() -> Bsdf<'static> {
     Bsdf::conductor_of_reflectance(Lanes::rgb(0.9, 0.5, 0.1), 0.2, 0.2).on(Sides::Outside)
 }
 
@@ -141,7 +141,7 @@ fn sample(bsdf: &Bsdf, wo: Vec3, stream: &mut Stream) -> Option<BsdfSample> {
 }
 
 /// Every model with a density, from every direction.
-fn rough_cases() -> impl Iterator<Item = (String, Bsdf, Vec3)> {
+fn rough_cases() -> impl Iterator<Item = (String, Bsdf<'static>, Vec3)> {
     bsdfs()
         .into_iter()
         .filter(|(_, bsdf)| !bsdf.is_specular())

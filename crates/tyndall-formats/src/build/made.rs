@@ -58,6 +58,7 @@ pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
         | MaterialKind::DiffuseTransmission { .. }
         | MaterialKind::Plastic { .. }
         | MaterialKind::Coated(_)
+        | MaterialKind::Measured { .. }
         | MaterialKind::Interface => &[],
     }
 }

@@ -12,10 +12,13 @@ mod textures;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
+use std::{collections::HashMap, path::PathBuf, sync::Arc};
 
 use glam::DMat4;
-use tyndall::{film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode, texture::Texture};
+use tyndall::{
+    bsdf::measured::Tables, film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode,
+    texture::Texture,
+};
 
 use crate::{
     desc::{FilmDesc, MaterialId, MediumId, SceneDesc, TextureId},
@@ -32,7 +35,7 @@ use textures::Pictures;
 /// Files that cannot be read, unknown names of measured data, coefficients that are no physics.
 pub fn build(desc: &SceneDesc, sources: SourceMap, color: ColorMode) -> Result<(Scene, SourceMap), Diagnostics> {
     let mut errors = ErrorList::default();
-    let scene = Builder::new(desc, &mut errors).scene(color);
+    let scene = Builder::new(desc, &mut errors, color).scene();
     match scene {
         Some(scene) if errors.is_empty() => Ok((scene, sources)),
         _ => Err(errors.into_diagnostics(sources)),
@@ -46,23 +49,28 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    /// Measured materials by file.
+    measured: Vec<(PathBuf, Arc<Tables>)>,
     made: Made,
+    color: ColorMode,
 }
 
 impl<'a> Builder<'a> {
-    fn new(desc: &'a SceneDesc, errors: &'a mut ErrorList) -> Self {
+    fn new(desc: &'a SceneDesc, errors: &'a mut ErrorList, color: ColorMode) -> Self {
         Self {
             desc,
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            measured: Vec::new(),
+            color,
             made: Made::new(desc.materials.len()),
         }
     }
 }
 
 impl Builder<'_> {
-    fn scene(&mut self, color: ColorMode) -> Option<Scene> {
+    fn scene(&mut self) -> Option<Scene> {
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
         let shapes = self.shapes();
@@ -73,7 +81,7 @@ impl Builder<'_> {
         let media = media.into_iter().collect::<Option<Vec<_>>>()?;
         let (shapes, lights, camera) = (shapes?, lights?, camera?);
         let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect());
-        Some(Scene::new(color, camera, shapes.geometry, shapes.objects, materials, media, table))
+        Some(Scene::new(self.color, camera, shapes.geometry, shapes.objects, materials, media, table))
     }
 
     fn transform(&mut self, matrix: DMat4, span: Span) -> Option<Transform> {

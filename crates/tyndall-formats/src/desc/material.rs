@@ -2,7 +2,7 @@
 
 use tyndall::relief::Rule;
 
-use super::{MaterialId, Span, Spanned, SpectrumDesc, Varying};
+use super::{FileRef, MaterialId, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,6 +77,11 @@ pub enum MaterialKind {
     },
     /// A base under a coat of a dielectric (pbrt).
     Coated(Box<CoatedDesc>),
+    /// A material as it was measured, in a file of RGL's.
+    Measured {
+        /// The file.
+        path: FileRef,
+    },
     /// No surface at all: a boundary of media that light passes unchanged.
     Interface,
     /// Two materials mixed.

@@ -143,6 +143,14 @@ impl<'t> Builder<'t> {
                 nonlinear: object.flag("nonlinear", false, &mut self.report),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
+            "measured" => {
+                let Some(name) = object.string("filename", &mut self.report) else {
+                    let error = SceneError::at(element.span, "the bsdf \"measured\" lacks a \"filename\"");
+                    self.report.errors.push(error);
+                    return None;
+                };
+                MaterialKind::Measured { path: self.file(name) }
+            }
             "blendbsdf" => {
                 if !object.has("weight") {
                     let error = SceneError::at(element.span, "\"blendbsdf\" lacks a \"weight\"");

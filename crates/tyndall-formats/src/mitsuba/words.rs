@@ -23,6 +23,7 @@ const PLUGINS: &[Plugins] = &[
             "roughconductor",
             "null",
             "plastic",
+            "measured",
             "blendbsdf",
             "mask",
             "bumpmap",
@@ -31,7 +32,6 @@ const PLUGINS: &[Plugins] = &[
         later: &[
             "circular",
             "hair",
-            "measured",
             "measured_polarized",
             "polarizer",
             "pplastic",

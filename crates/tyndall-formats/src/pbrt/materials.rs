@@ -16,7 +16,7 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 9] = [
+const MATERIALS: [&str; 10] = [
     "coatedconductor",
     "coateddiffuse",
     "conductor",
@@ -24,10 +24,11 @@ const MATERIALS: [&str; 9] = [
     "diffuse",
     "diffusetransmission",
     "interface",
+    "measured",
     "mix",
     "thindielectric",
 ];
-const LATER_MATERIALS: [&str; 3] = ["hair", "measured", "subsurface"];
+const LATER_MATERIALS: [&str; 2] = ["hair", "subsurface"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -83,6 +84,7 @@ impl Reader {
             "diffusetransmission" => diffuse_transmission(&mut p, &self.textures),
             "coateddiffuse" => coated_diffuse(&mut p, &self.textures),
             "coatedconductor" => coated_conductor(&mut p, &self.textures),
+            "measured" => measured(&mut p),
             "mix" => self.mix(&mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
@@ -243,6 +245,14 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
         transmittance: p.varying("transmittance", 0.25, textures),
         scale: p.not_negative("scale", 1.0).value,
     }
+}
+
+fn measured(p: &mut Params) -> MaterialKind {
+    let Some(file) = p.string_opt("filename") else {
+        p.error(SceneError::at(p.span, "a measured material needs \"string filename\""));
+        return MaterialKind::Interface;
+    };
+    MaterialKind::Measured { path: file.map(|name| p.resolve(&name)) }
 }
 
 /// The names of a roughness: along both tangents, along the first, along the second.

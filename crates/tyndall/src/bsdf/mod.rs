@@ -15,6 +15,7 @@
 //! To add a model: one file, one variant with its forwarding lines, one row in the table of `tests/models.rs`.
 
 pub mod fresnel;
+pub mod measured;
 pub mod microfacet;
 
 mod coated;
@@ -39,6 +40,7 @@ pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
+use measured::Measured;
 use microfacet::{Distribution, Microfacets, Shadowing};
 
 /// Surfaces whose roughness is below this in both directions are perfectly smooth: the lobe would be narrower than
@@ -103,7 +105,7 @@ pub struct BsdfSample {
 
 /// A model of a surface. The methods only forward.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Bsdf {
+pub enum Bsdf<'a> {
     /// Lambert's law.
     Diffuse(Diffuse),
     /// A polished metal.
@@ -122,11 +124,13 @@ pub enum Bsdf {
     Plastic(Plastic),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Coated),
+    /// As it was measured.
+    Measured(Measured<'a>),
     /// No surface at all: a mere boundary of media.
     Null,
 }
 
-impl Bsdf {
+impl Bsdf<'_> {
     /// Lambert's law on both sides.
     pub fn diffuse(reflectance: Lanes) -> Self {
         Self::Diffuse(Diffuse { reflectance, sides: Sides::Both })
@@ -172,7 +176,7 @@ impl Bsdf {
 
     /// The same model with every reflection multiplied by `reflectance` and every transmission by `transmittance`
     /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy. What is
-    /// under a coat takes no tints.
+    /// under a coat and what was measured take no tints.
     #[must_use]
     pub fn tinted(mut self, reflectance: Lanes, transmittance: Lanes) -> Self {
         match &mut self {
@@ -190,7 +194,7 @@ impl Bsdf {
                 model.reflectance *= reflectance;
                 model.transmittance *= transmittance;
             }
-            Self::Coated(_) | Self::Null => {}
+            Self::Coated(_) | Self::Measured(_) | Self::Null => {}
         }
         self
     }
@@ -218,6 +222,7 @@ impl Bsdf {
             | Self::DiffuseTransmission(_)
             | Self::Plastic(_)
             | Self::Coated(_)
+            | Self::Measured(_)
             | Self::Null => return self,
         };
         (microfacets.distribution, microfacets.shadowing) = (distribution, shadowing);
@@ -232,6 +237,7 @@ impl Bsdf {
             Self::Conductor(model) => model.sides = sides,
             Self::RoughConductor(model) => model.metal.sides = sides,
             Self::Plastic(model) => model.sides = sides,
+            Self::Measured(model) => model.sides = sides,
             Self::Dielectric(_)
             | Self::RoughDielectric(_)
             | Self::ThinDielectric(_)
@@ -252,6 +258,7 @@ impl Bsdf {
             Self::DiffuseTransmission(model) => model.eval(wo, wi),
             Self::Plastic(model) => model.eval(wo, wi),
             Self::Coated(model) => model.eval(wo, wi),
+            Self::Measured(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
@@ -266,6 +273,7 @@ impl Bsdf {
             Self::DiffuseTransmission(model) => model.pdf(wo, wi),
             Self::Plastic(model) => model.pdf(wo, wi),
             Self::Coated(model) => model.pdf(wo, wi),
+            Self::Measured(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
     }
@@ -283,6 +291,7 @@ impl Bsdf {
             Self::DiffuseTransmission(model) => model.sample(wo, u_lobe, u),
             Self::Plastic(model) => model.sample(wo, u_lobe, u),
             Self::Coated(model) => model.sample(wo, u_lobe, u),
+            Self::Measured(model) => model.sample(wo, u),
             Self::Null => Some(straight_on(wo)),
         }
     }
@@ -301,9 +310,12 @@ impl Bsdf {
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {
-            Self::Diffuse(_) | Self::Conductor(_) | Self::RoughConductor(_) | Self::Plastic(_) | Self::Coated(_) => {
-                false
-            }
+            Self::Diffuse(_)
+            | Self::Conductor(_)
+            | Self::RoughConductor(_)
+            | Self::Plastic(_)
+            | Self::Coated(_)
+            | Self::Measured(_) => false,
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),

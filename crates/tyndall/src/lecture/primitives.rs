@@ -82,8 +82,8 @@ type Record = u32;
 
 /// A point `x` or `y` of the slides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
-    place: Place,
+pub(super) struct Point<'a> {
+    place: Place<'a>,
     /// What was around it on the side from which it was reached.
     within: Record,
     /// The medium there.
@@ -93,14 +93,14 @@ pub(super) struct Point {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Place {
+enum Place<'a> {
     Eye(Vec3),
-    Surface { hit: Interaction, bsdf: Bsdf, relief: Option<MaterialId>, from_outside: bool, beyond: Record },
+    Surface { hit: Interaction, bsdf: Bsdf<'a>, relief: Option<MaterialId>, from_outside: bool, beyond: Record },
     Collision { p: Vec3, phase: Phase },
     Infinity,
 }
 
-impl Point {
+impl<'a> Point<'a> {
     /// Whether there is no material: light goes straight on.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.place, Place::Surface { bsdf: Bsdf::Null, .. })
@@ -126,7 +126,7 @@ impl Point {
     }
 
     /// The vertex of the renderer that this point is, seen along `ω`.
-    fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex> {
+    fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex<'a>> {
         match self.place {
             Place::Surface { hit, bsdf, relief, .. } => Some(Vertex::met(scene, hit, bsdf, -omega, relief)),
             Place::Collision { p, phase } => Some(Vertex::Medium { p, dir: omega, phase }),
@@ -178,7 +178,7 @@ impl<'a> World<'a> {
     }
 
     /// The eye at `p`.
-    pub(super) fn eye(&self, p: Vec3) -> Point {
+    pub(super) fn eye(&self, p: Vec3) -> Point<'a> {
         Point { place: Place::Eye(p), within: 0, inside: self.inside(0), distance: 0.0 }
     }
 
@@ -205,7 +205,7 @@ impl<'a> World<'a> {
     }
 
     /// `y = traceRay(x, ω)`: the first surface, or infinity; `None` when the recursion is too deep.
-    pub(super) fn trace_ray(&mut self, x: &Point, omega: Vec3) -> Option<Point> {
+    pub(super) fn trace_ray(&mut self, x: &Point, omega: Vec3) -> Option<Point<'a>> {
         if self.depth >= MAX_DEPTH {
             return None;
         }
@@ -253,7 +253,7 @@ impl<'a> World<'a> {
     }
 
     /// `traceRay` past all surfaces without a material, whatever they emit.
-    pub(super) fn trace_ray_past_openings(&mut self, x: &Point, omega: Vec3) -> Option<Point> {
+    pub(super) fn trace_ray_past_openings(&mut self, x: &Point, omega: Vec3) -> Option<Point<'a>> {
         let mut y = self.trace_ray(x, omega)?;
         while y.is_open() {
             y = self.trace_ray(&y, omega)?;
@@ -285,7 +285,7 @@ impl<'a> World<'a> {
     }
 
     /// The collision `x′ = x + sω` before `y`. One that rounding has carried out of its medium is tallied, and black.
-    pub(super) fn collision(&mut self, x: &Point, s: f32, omega: Vec3, y: &Point) -> Point {
+    pub(super) fn collision(&mut self, x: &Point, s: f32, omega: Vec3, y: &Point) -> Point<'a> {
         let p = self.leave(x, omega).0.at(s);
         match self.scatterer(y) {
             Some((id, phase)) if self.scene.may_contain(id, p) => {

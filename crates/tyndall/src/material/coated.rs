@@ -47,7 +47,7 @@ pub enum CoatedBase {
 
 impl CoatedMaterial {
     /// The BSDF in the lanes of a path, with the index of the coat at the wavelength of lane `hero`.
-    pub(super) fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+    pub(super) fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf<'static> {
         let eta = self.eta.at(wavelengths, hero);
         let [alpha_x, alpha_y] = self.alpha.at(at);
         Bsdf::Coated(Coated {

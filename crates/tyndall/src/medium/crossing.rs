@@ -46,7 +46,13 @@ pub enum Skin {
 impl Skin {
     /// The BSDF; [`Bsdf::Null`] where nothing is.
     #[inline]
-    pub fn bsdf(self, material: &Material, hit: &Interaction, wavelengths: &Wavelengths, hero: usize) -> Bsdf {
+    pub fn bsdf<'a>(
+        self,
+        material: &'a Material,
+        hit: &Interaction,
+        wavelengths: &Wavelengths,
+        hero: usize,
+    ) -> Bsdf<'a> {
         match self {
             Self::Open => Bsdf::Null,
             Self::Written => material.bsdf(&hit.into(), wavelengths, hero),

@@ -13,7 +13,7 @@ use crate::{
 
 /// A scattering vertex.
 #[derive(Debug, Clone, Copy)]
-pub enum Vertex {
+pub enum Vertex<'a> {
     /// On a surface.
     Surface {
         /// Where.
@@ -21,7 +21,7 @@ pub enum Vertex {
         /// The local space of its BSDF.
         frame: Frame,
         /// How it scatters.
-        bsdf: Bsdf,
+        bsdf: Bsdf<'a>,
         /// Back along the path, local.
         wo: Vec3,
         /// How a relief shadows itself: α² \[1\].
@@ -55,14 +55,14 @@ pub struct Scattered {
     pub crossed: bool,
 }
 
-impl Vertex {
+impl<'a> Vertex<'a> {
     /// A vertex on a surface that a ray along `dir` has hit.
     ///
     /// Where the shading normal of a boundary turns away from a ray that the true surface faces, the true normal shades:
     /// the two must agree on the side that the path comes from, or it would change sides without changing media. What lets
     /// no light through has no such trouble, and the shading normal alone decides, as in pbrt and in Mitsuba.
     #[inline]
-    pub fn surface(hit: Interaction, bsdf: Bsdf, dir: Vec3) -> Self {
+    pub fn surface(hit: Interaction, bsdf: Bsdf<'a>, dir: Vec3) -> Self {
         let frame = hit.shading_frame();
         let wo = frame.to_local(-dir);
         if may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
@@ -74,7 +74,7 @@ impl Vertex {
 
     /// The same on the relief of an embossed material, if there is one.
     #[inline]
-    pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf, dir: Vec3, relief: Option<MaterialId>) -> Self {
+    pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf<'a>, dir: Vec3, relief: Option<MaterialId>) -> Self {
         let even = Self::surface(hit, bsdf, dir);
         match relief.and_then(|id| scene.relief(id)) {
             Some(relief) => even.embossed(scene, dir, relief),

@@ -107,7 +107,7 @@ pub enum Base {
 }
 
 impl Base {
-    fn bsdf(self) -> Bsdf {
+    fn bsdf(self) -> Bsdf<'static> {
         match self {
             Self::Diffuse(reflectance) => Bsdf::diffuse(reflectance),
             Self::Metal { eta, k, alpha_x, alpha_y } => Bsdf::conductor(eta, k, alpha_x, alpha_y),

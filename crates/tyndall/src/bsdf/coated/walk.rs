@@ -16,7 +16,7 @@ const LEAST_WEIGHT: f32 = 0.25;
 pub(super) struct Layers<'a> {
     model: &'a Coated,
     pub(super) top: Top,
-    base: Bsdf,
+    base: Bsdf<'static>,
     /// How the coat scatters; `None` if it only absorbs.
     phase: Option<Phase>,
 }
