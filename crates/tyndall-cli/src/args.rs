@@ -88,9 +88,9 @@ pub(crate) struct RenderOptions {
     /// How light is transported
     #[arg(long, value_name = "NAME", default_value = "volpath", help_heading = "How to render")]
     pub(crate) integrator: IntegratorName,
-    /// What the lanes of a path carry
-    #[arg(long, value_name = "MODE", default_value = "rgb", help_heading = "How to render")]
-    pub(crate) color: ColorName,
+    /// What the lanes of a path carry [default: rgb, or spectral for a film that records wavelengths]
+    #[arg(long, value_name = "MODE", help_heading = "How to render")]
+    pub(crate) color: Option<ColorName>,
     /// Where the first dimensions of a sample come from
     #[arg(long, value_name = "NAME", default_value = "sobol", help_heading = "How to render")]
     pub(crate) sampler: SamplerName,

@@ -1,17 +1,17 @@
 //! Estimators by name.
 
 use tyndall::{
-    integrator::{Analog, Integrator, VolPath},
+    integrator::{Analog, Counted, Integrator, VolPath},
     lecture::Lecture,
 };
 
 use crate::args::IntegratorName;
 
-/// The estimator of a name. `max_depth`, a limit on the scatterings of a path, is for `volpath` alone.
-pub(crate) fn integrator(name: IntegratorName, max_depth: Option<u32>) -> Box<dyn Integrator> {
+/// The estimator of a name. `max_depth`, a limit on the scatterings of a path that are `counted`, is for `volpath` alone.
+pub(crate) fn integrator(name: IntegratorName, max_depth: Option<u32>, counted: Counted) -> Box<dyn Integrator> {
     let lecture = |version: Lecture| -> Box<dyn Integrator> { Box::new(version) };
     match name {
-        IntegratorName::Volpath => Box::new(VolPath { max_depth, ..VolPath::default() }),
+        IntegratorName::Volpath => Box::new(VolPath { max_depth, counted, ..VolPath::default() }),
         IntegratorName::Analog => Box::new(Analog),
         IntegratorName::LectureSurface0 => lecture(Lecture::SurfaceV0),
         IntegratorName::LectureSurface05 => lecture(Lecture::SurfaceV0_5),

@@ -29,8 +29,12 @@ pub(crate) struct Loaded {
     pub(crate) build_seconds: f64,
 }
 
-/// Reads and builds a scene, at another resolution if asked.
-pub(crate) fn load(input: &SceneOptions, resolution: Option<[u32; 2]>, color: ColorMode) -> anyhow::Result<Loaded> {
+/// Reads and builds a scene, at another resolution if asked; its colour is what its film needs, if nothing is said.
+pub(crate) fn load(
+    input: &SceneOptions,
+    resolution: Option<[u32; 2]>,
+    color: Option<ColorMode>,
+) -> anyhow::Result<Loaded> {
     let start = Instant::now();
     let unsupported = if input.lenient { Unsupported::Warn } else { Unsupported::Refuse };
     let (mut desc, sources) = tyndall_formats::load(&input.scene, &input.define, unsupported)?;
@@ -40,6 +44,7 @@ pub(crate) fn load(input: &SceneOptions, resolution: Option<[u32; 2]>, color: Co
     let load_seconds = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
+    let color = color.unwrap_or(desc.film.color());
     let (scene, sources) = tyndall_formats::build::build(&desc, sources, color)?;
     let build_seconds = start.elapsed().as_secs_f64();
     let hash = hash::of_scene(files(&desc, &sources), &input.define)?;

@@ -113,7 +113,7 @@ fn lathe(profile: &[ProfilePoint]) -> TriangleMesh {
             }
         }
     }
-    TriangleMesh { positions: each(|p| p.0), indices, normals: Some(each(|p| p.1)), uvs: None }
+    TriangleMesh { positions: each(|p| p.0), indices, normals: Some(each(|p| p.1)), ..TriangleMesh::default() }
 }
 
 /// The direction in the world (y up) of the middle of a pixel; the map's own space has z up.

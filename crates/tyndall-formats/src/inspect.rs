@@ -36,7 +36,7 @@ fn shapes(desc: &SceneDesc) -> impl Iterator<Item = &ShapeDesc> {
     desc.shapes.iter().chain(desc.groups.iter().flat_map(|group| &group.shapes))
 }
 
-/// Named materials, media and groups that nothing refers to.
+/// Named materials, media, textures and groups that nothing refers to.
 fn unused(desc: &SceneDesc, warnings: &mut Vec<SceneError>) {
     let made_of = desc.materials.iter().flat_map(|material| parts(&material.kind));
     let materials = shapes(desc).map(|shape| shape.material.value.0).chain(made_of.map(|part| part.value.0));
@@ -46,6 +46,8 @@ fn unused(desc: &SceneDesc, warnings: &mut Vec<SceneError>) {
     let camera = desc.camera.medium.map(|m| m.value);
     let media: HashSet<_> = interfaces.chain(lights).chain([camera]).flatten().map(|id| id.0).collect();
     let groups: HashSet<_> = desc.instances.iter().map(|instance| instance.group.value.0).collect();
+
+    let textures: HashSet<_> = desc.textures_in_use().map(|id| id.0).collect();
 
     let mut tell = |what: &str, name: Option<&str>, span, is_used: bool| {
         if let (Some(name), false) = (name, is_used) {
@@ -57,6 +59,9 @@ fn unused(desc: &SceneDesc, warnings: &mut Vec<SceneError>) {
     }
     for (i, medium) in (0..).zip(&desc.media) {
         tell("medium", medium.name.as_deref(), medium.span, media.contains(&i));
+    }
+    for (i, texture) in (0..).zip(&desc.textures) {
+        tell("texture", texture.name.as_deref(), texture.span, textures.contains(&i));
     }
     for (i, group) in (0..).zip(&desc.groups) {
         tell("object", Some(&group.name), group.span, groups.contains(&i));
@@ -86,9 +91,12 @@ fn media_out_of_scale(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneE
         } else {
             continue;
         };
-        let measured = matches!(words.coefficients, Coefficients::Preset { .. });
+        let measured = matches!(
+            words.coefficients,
+            Coefficients::Preset { .. } | Coefficients::PerMillimetre { .. } | Coefficients::Reflectance { .. }
+        );
         warnings.push(SceneError::warning(words.span, told).help(if measured {
-            "measured coefficients are per mm: does `Option \"string unit\"` say what a unit of the scene is?"
+            "its coefficients are per mm: does `Option \"string unit\"` say what a unit of the scene is?"
         } else {
             "coefficients are per scene unit: are they meant for a scene of this size?"
         }));
@@ -105,8 +113,14 @@ fn largest_body(scene: &Scene, medium: tyndall::medium::MediumId) -> f32 {
 /// Lights without size, where a medium can be reached through polished boundaries only: no path and no light sample finds
 /// the way.
 fn lights_behind_glass(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneError>) {
-    let has_no_size =
-        |kind: &LightKind| matches!(kind, LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Distant { .. });
+    let has_no_size = |kind: &LightKind| match kind {
+        LightKind::Point { .. }
+        | LightKind::Spot { .. }
+        | LightKind::Distant { .. }
+        | LightKind::Goniometric { .. }
+        | LightKind::Projector { .. } => true,
+        LightKind::Constant { .. } | LightKind::Environment { .. } | LightKind::Portal { .. } => false,
+    };
     let Some(light) = desc.lights.iter().find(|light| has_no_size(&light.kind)) else { return };
     for (index, words) in desc.media.iter().enumerate() {
         let id = MediumId(index as u32);
@@ -189,6 +203,8 @@ mod tests {
         let told = warned(
             r#"MakeNamedMaterial "red" "string type" "diffuse"
                MakeNamedMedium "m" "string type" "homogeneous"
+               Texture "bark" "float" "constant" Texture "moss" "float" "constant"
+               Texture "wood" "float" "scale" "texture tex" "moss" Shape "sphere" "texture alpha" "wood"
                ObjectBegin "tree" Shape "sphere" ObjectEnd
                Shape "sphere""#,
         );
@@ -197,6 +213,8 @@ mod tests {
         {
             assert!(told.contains(what), "{told}");
         }
+        assert!(told.contains("the texture \"bark\" is not used"), "{told}");
+        assert!(!told.contains("the texture \"moss\"") && !told.contains("the texture \"wood\""), "{told}");
         assert!(told.contains("scene.pbrt:2:1"), "{told}");
     }
 

@@ -117,10 +117,10 @@ mod tests {
     /// Without a camera that is known there is no image: warnings alone do not make a scene.
     #[test]
     fn a_scene_whose_camera_is_not_known_yet_is_refused_anyway() {
-        let text = r#"<scene version="3.0.0"><sensor type="distant"/></scene>"#;
+        let text = r#"<scene version="3.0.0"><sensor type="perspective"><film type="specfilm"/></sensor></scene>"#;
         let refused = read("blind.xml", text, Unsupported::Warn).unwrap_err().to_string();
         assert!(refused.contains("error: without what is not known yet, no image is left to be made"), "{refused}");
-        assert!(refused.contains("warning: the sensor \"distant\" is not known yet"), "{refused}");
+        assert!(refused.contains("warning: the film \"specfilm\" is not known yet"), "{refused}");
     }
 
     /// A slip of the pen is no word that will be known one day.

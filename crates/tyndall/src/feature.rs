@@ -4,13 +4,14 @@
 //! value has four lanes, the last of which is 1 where something was hit (of the albedo too).
 
 use crate::{
+    bsdf::Bsdf,
     camera::CameraRay,
     math::{Transform, Vec2, Vec3},
     path::Vertex,
     sampling::Sampler,
     scene::Scene,
     shape::Interaction,
-    spectrum::{Spectrum, Wavelengths, film_rgb},
+    spectrum::{Lanes, Spectrum, Wavelengths, film_rgb},
 };
 
 /// Something to know about the first surface.
@@ -22,7 +23,7 @@ pub enum Feature {
     Position(Space),
     /// Unit normal of the surface.
     GeometricNormal(Space, Facing),
-    /// Unit normal for shading.
+    /// Unit normal for shading, that of a relief included.
     ShadingNormal(Space, Facing),
     /// Surface parameters [1].
     Uv,
@@ -79,7 +80,9 @@ impl<'a> FirstHit<'a> {
             Feature::Position(Space::World) => hit.p.to_array(),
             Feature::Position(Space::Camera) => to_world.inverse.transform_point3(hit.p).to_array(),
             Feature::GeometricNormal(space, facing) => self.normal(hit.ng, space, facing, to_world),
-            Feature::ShadingNormal(space, facing) => self.normal(hit.ns, space, facing, to_world),
+            Feature::ShadingNormal(space, facing) => {
+                self.normal(self.shading_normal(hit, sampler), space, facing, to_world)
+            }
             Feature::Uv => [hit.uv.x, hit.uv.y, 0.0],
             Feature::DpDu => hit.dpdu.to_array(),
             Feature::Primitive => [hit.prim as f32, 0.0, 0.0],
@@ -87,6 +90,16 @@ impl<'a> FirstHit<'a> {
             Feature::Albedo => self.albedo(hit, wavelengths, sampler),
         };
         [x, y, z, 1.0].map(|v| v * self.ray.weight)
+    }
+
+    /// That of the relief, if there is one.
+    fn shading_normal(&self, hit: &Interaction, sampler: &mut Sampler) -> Vec3 {
+        let dir = self.ray.ray.dir;
+        let (_, relief) = self.scene.meet(hit, dir, || sampler.next_1d());
+        match Vertex::met(self.scene, *hit, Bsdf::diffuse(Lanes::ONE), dir, relief) {
+            Vertex::Surface { frame, .. } if relief.is_some() => frame.n,
+            _ => hit.ns,
+        }
     }
 
     fn normal(&self, n: Vec3, space: Space, facing: Facing, to_world: &Transform) -> [f32; 3] {

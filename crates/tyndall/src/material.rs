@@ -1,14 +1,16 @@
 //! What a surface is made of, as the scene has it: spectra that become a [`Bsdf`] at the wavelengths of a path.
 
 mod coated;
+mod principled;
 
 pub use coated::{CoatedBase, CoatedMaterial};
+pub use principled::{BurleyTextures, PrincipledTextures, ThinTextures};
 
 use std::sync::Arc;
 
 use crate::{
     bsdf::{
-        Bsdf, Plastic, Sides, index_of_reflectance,
+        Bsdf, Plastic, RoughCoat, RoughPlastic, Sides, index_of_reflectance,
         measured::{Measured, Tables},
         microfacet::{Distribution, Shadowing},
     },
@@ -83,6 +85,23 @@ pub enum Material {
         /// The sides that reflect.
         sides: Sides,
     },
+    /// A diffuse base under a rough coat.
+    RoughPlastic {
+        /// The coat.
+        coat: Arc<RoughCoat>,
+        /// Reflectance of the base [1].
+        reflectance: Texture,
+        /// Whether light between base and coat deepens the colour, or keeps its hue.
+        nonlinear: bool,
+        /// A factor on what the coat reflects [1].
+        tint: Texture,
+        /// The sides that reflect.
+        sides: Sides,
+    },
+    /// Burley's model of solids.
+    Principled(Box<PrincipledTextures>),
+    /// Burley's model of sheets.
+    PrincipledThin(Box<ThinTextures>),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Box<CoatedMaterial>),
     /// As it was measured.
@@ -156,7 +175,7 @@ impl Roughness {
 
     /// The same model with microfacets after these laws.
     #[inline]
-    fn shape<'a>(&self, bsdf: Bsdf<'a>) -> Bsdf<'a> {
+    fn shape<'s>(&self, bsdf: Bsdf<'s>) -> Bsdf<'s> {
         bsdf.distributed(self.distribution, self.shadowing)
     }
 }
@@ -227,6 +246,13 @@ impl Material {
                     .tinted(tint.eval(at, wavelengths), Lanes::ONE)
                     .on(*sides)
             }
+            Self::RoughPlastic { coat, reflectance, nonlinear, tint, sides } => {
+                Bsdf::RoughPlastic(RoughPlastic::new(coat, share(reflectance, at, wavelengths), *nonlinear))
+                    .tinted(tint.eval(at, wavelengths), Lanes::ONE)
+                    .on(*sides)
+            }
+            Self::Principled(textures) => textures.bsdf(at, wavelengths),
+            Self::PrincipledThin(textures) => textures.bsdf(at, wavelengths),
             Self::Coated(coated) => coated.bsdf(at, wavelengths, hero),
             Self::Measured { tables, sides } => Bsdf::Measured(Measured::new(tables, wavelengths)).on(*sides),
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].

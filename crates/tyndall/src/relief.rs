@@ -12,7 +12,7 @@
 //! | | Mitsuba 3.9 | pbrt-v4 |
 //! |---|---|---|
 //! | tangents | without their parts along `n` | as they are, with `h ∂n/∂u` added; on meshes with normals `∂p/∂u` at right angles to `n`, and `n × ∂p/∂u` |
-//! | `n′` faces away from the viewer | its tangential part is turned round (Schüßler et al. 2017), unless the file says no: then the point is black | the BSDF is seen from its other side; that of a boundary as if it were even |
+//! | `n′` faces away from the viewer | its tangential part is turned round (Schüßler et al. 2017), unless the file says no: then the BSDF is seen from its other side, which is black within `twosided` and at a boundary | the BSDF is seen from its other side; that of a boundary as if it were even |
 //! | light through the relief | times `2 / (1 + √(1 + α² tan² θ_i))`, `α² = min(tan² θ_n′ / 8, 1)`, θ from `n` (Estevez, Lecocq and Stellmann 2019), unless the file says no | unchanged |
 //! | a direction on different sides of `n` and `n′` | black | as the BSDF says; at a boundary black, or by the even surface if it is clear |
 //!
@@ -74,6 +74,11 @@ pub(crate) struct Embossed {
 }
 
 impl Relief {
+    /// Whether the back has the mirror image of the relief of the front.
+    pub(crate) fn is_mirrored(&self) -> bool {
+        matches!(self.rule, Rule::Mitsuba { mirrored: true, .. })
+    }
+
     /// The shading at `hit` seen from `wo`, given the shading of the even surface.
     pub(crate) fn emboss(&self, geometry: &Geometry, hit: &Interaction, even: &Frame, wo: Vec3) -> Embossed {
         let n = match &self.map {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::{
     camera::CameraRay,
     feature::FirstHit,
-    film::{Cell, Crop, Film, Pixel},
+    film::{Cell, Crop, Film, Pixel, Recorded},
     integrator::Integrator,
     sampling::{Sampler, SamplerKind},
     scene::Scene,
@@ -217,9 +217,15 @@ fn sample_pixel(
     }
     let radiance = integrator.li(scene, ray, wavelengths, u_hero, &mut sampler, tally);
     if !cells.is_empty() {
-        let first = FirstHit::of(scene, seen);
+        let mut first = None;
         for (cell, layer) in cells.iter_mut().zip(&scene.camera.layers) {
-            cell.add(first.sample(layer.feature, &wavelengths, &mut sampler));
+            cell.add(match layer.recorded {
+                Recorded::Light(bands) => bands.sample(radiance, &wavelengths).map(|v| v * weight),
+                Recorded::Surface(feature) => {
+                    let first = first.get_or_insert_with(|| FirstHit::of(scene, seen));
+                    first.sample(feature, &wavelengths, &mut sampler)
+                }
+            });
         }
     }
     let factor = scene.camera.exposure * weight;

@@ -121,6 +121,12 @@ impl Scene {
         &self.materials[self.object(hit).material.0 as usize]
     }
 
+    /// A medium by its index.
+    #[inline]
+    pub fn medium(&self, id: MediumId) -> &Homogeneous {
+        &self.media[id.0 as usize]
+    }
+
     /// The light that was hit, if the surface shines.
     #[inline]
     pub fn light_at(&self, hit: &Interaction) -> Option<(LightId, &AreaLight)> {

@@ -8,8 +8,8 @@ use common::{World, assert_mean, diffuse};
 use testkit::{Family, Grid, Stream, close, sphere_test};
 use tyndall::{
     camera::{
-        Batch, CameraModel, Element, IrradianceMeter, LensSystem, Orthographic, Perspective, RadianceMeter, Realistic,
-        Spherical, SphericalMapping, Stop, ThinLens, View,
+        Batch, CameraModel, Distant, Element, IrradianceMeter, LensSystem, Orthographic, Perspective, RadianceMeter,
+        Realistic, Spherical, SphericalMapping, Stop, Surface, Target, ThinLens, View,
     },
     integrator::VolPath,
     light::EmitterShape,
@@ -20,6 +20,10 @@ const N: usize = 200_000;
 
 fn next_2d(stream: &mut Stream) -> Vec2 {
     Vec2::new(stream.next_f32(), stream.next_f32())
+}
+
+fn meter(pieces: Vec<EmitterShape>) -> IrradianceMeter {
+    IrradianceMeter { surface: Surface::new(pieces).unwrap() }
 }
 
 fn view(model: CameraModel) -> View {
@@ -84,7 +88,7 @@ fn an_irradiance_meter_is_uniform_in_area_and_follows_the_cosine() {
         e2: Vec3::X * width,
         ng: Vec3::Y,
     };
-    let meter = IrradianceMeter::new(vec![triangle(0.0, 1.0), triangle(1.0, 3.0)]).unwrap();
+    let meter = meter(vec![triangle(0.0, 1.0), triangle(1.0, 3.0)]);
     let camera = view(CameraModel::IrradianceMeter(meter));
     let mut stream = Stream::new(3);
     let directions = || {
@@ -97,6 +101,73 @@ fn an_irradiance_meter_is_uniform_in_area_and_follows_the_cosine() {
     let left = (0..N).filter(|_| camera.ray(next_2d(&mut stream), next_2d(&mut stream)).ray.origin.x < 1.0).count();
     family.check("places", close(left as f64 / N as f64, 0.25, 0.02));
     family.finish();
+}
+
+/// Rays of a distant camera are parallel and start outside of the scene; over its disk, and over a surface seen askew, they
+/// are uniform in area.
+#[test]
+fn a_distant_camera_sees_its_target_evenly() {
+    let mut family = Family::new("distant", 0.01);
+    let look = glam::DMat4::from_quat(glam::DQuat::from_rotation_arc(
+        glam::DVec3::Z,
+        glam::DVec3::new(0.3, -0.8, 0.5).normalize(),
+    ));
+    let (centre, radius) = (Vec3::new(1.0, 2.0, 3.0), 2.0);
+    let seen = |target| View {
+        to_world: Transform::new(look).unwrap(),
+        model: CameraModel::Distant(Distant { centre, radius, target }),
+    };
+    let camera = seen(Target::Disk);
+    let mut stream = Stream::new(5);
+    let polar = || {
+        let ray = camera.ray(Vec2::splat(0.5), next_2d(&mut stream)).ray;
+        let aside = look.inverse().transform_vector3((ray.origin - centre).as_dvec3());
+        assert!((aside.z + f64::from(radius)).abs() < 1e-5, "it starts at the sphere's near side");
+        let r = aside.truncate() / f64::from(radius);
+        Some([r.length_squared(), r.y.atan2(r.x)])
+    };
+    family.check("disk", Grid { x: [0.0, 1.0], ..Grid::SPHERE }.test(N, polar, |_| 1.0 / TAU));
+    let square = EmitterShape::Parallelogram { a: Vec3::ZERO, e1: Vec3::X, e2: Vec3::Y, ng: Vec3::Z };
+    let camera = seen(Target::Surface(Surface::new(vec![square]).unwrap()));
+    let mut stream = Stream::new(6);
+    let places = || {
+        let sample = camera.ray(Vec2::splat(0.5), next_2d(&mut stream));
+        assert!((sample.weight - 1.0).abs() < 1e-5);
+        let on_square = sample.ray.at(-sample.ray.origin.z / sample.ray.dir.z);
+        Some([f64::from(on_square.x), f64::from(on_square.y)])
+    };
+    family.check("surface", Grid::SQUARE.test(N, places, |_| 1.0));
+    family.finish();
+    let point = seen(Target::Point(Vec3::X)).ray(Vec2::splat(0.5), Vec2::ZERO).ray;
+    assert!((point.at(2.0 * radius) - Vec3::X).length() < 1e-6);
+}
+
+/// The area of a meter's curved patch weighs each point alike: over the saddle z = xy the mean of x² is
+/// `∫ x² √(1 + x² + y²) / ∫ √(1 + x² + y²)`.
+#[test]
+fn points_of_a_curved_meter_weigh_by_their_area() {
+    let saddle = tyndall::shape::Patch::new([Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE]);
+    let camera = view(CameraModel::IrradianceMeter(meter(vec![EmitterShape::Patch(saddle)])));
+    let element = |x: f64, y: f64| (1.0 + x * x + y * y).sqrt();
+    let over = |f: &dyn Fn(f64, f64) -> f64| {
+        testkit::quadrature::gauss_legendre(30, 0.0, 1.0, |y| {
+            testkit::quadrature::gauss_legendre(30, 0.0, 1.0, |x| f(x, y) * element(x, y))
+        })
+    };
+    let expected = over(&|x, _| x * x) / over(&|_, _| 1.0);
+    let mut stream = Stream::new(7);
+    let (mut sum, mut squares, mut weights) = (0.0, 0.0, 0.0);
+    for _ in 0..N {
+        let sample = camera.ray(next_2d(&mut stream), next_2d(&mut stream));
+        let (weight, x) = (f64::from(sample.weight) / PI, f64::from(sample.ray.origin.x));
+        sum += weight * x * x;
+        squares += (weight * x * x).powi(2);
+        weights += weight;
+    }
+    let n = N as f64;
+    let error = ((squares / n - (sum / n).powi(2)) / n).sqrt();
+    assert!((sum / n - expected).abs() < 4.0 * error, "{} ± {error}, expected {expected}", sum / n);
+    assert!((weights / n - 1.0).abs() < 2e-3, "{}", weights / n);
 }
 
 /// Radiance 1 from everywhere: cameras of radiance see 1, meters of irradiance π; a lens in front of a film sees the
@@ -113,7 +184,8 @@ fn every_camera_sees_a_uniform_world_as_its_page_says() {
         (CameraModel::Orthographic(Orthographic { window }), 1.0),
         (CameraModel::Spherical(Spherical { mapping: SphericalMapping::EqualArea }), 1.0),
         (CameraModel::RadianceMeter(RadianceMeter), 1.0),
-        (CameraModel::IrradianceMeter(IrradianceMeter::new(vec![sphere]).unwrap()), PI),
+        (CameraModel::Distant(Distant { centre: Vec3::ZERO, radius: 2.0, target: Target::Disk }), 1.0),
+        (CameraModel::IrradianceMeter(meter(vec![sphere])), PI),
         (CameraModel::Realistic(Box::new(Realistic::new(lens, 0.002, 1.0).unwrap())), on_axis),
     ];
     for (model, expected) in cameras {
@@ -133,7 +205,7 @@ fn a_meter_measures_on_the_side_of_its_normal() {
     for (ng, expected) in [(Vec3::Y, 0.25), (-Vec3::Y, 2.0)] {
         let mut world = World::seen(Vec3::Y, Vec3::ZERO);
         let plate = EmitterShape::Disk { centre: Vec3::Y * 5.0, ng, radius: 0.3, inner: 0.1 };
-        world.camera.view.model = CameraModel::IrradianceMeter(IrradianceMeter::new(vec![plate]).unwrap());
+        world.camera.view.model = CameraModel::IrradianceMeter(meter(vec![plate]));
         world.half_sky(0.25, 2.0);
         assert_mean("plate", &world.measure(&VolPath::default(), 10_000), [expected * PI; 3], 0.01);
     }

@@ -11,6 +11,7 @@ use tyndall::{
     material::Material,
     math::Vec3,
     medium::Homogeneous,
+    phase::Phase,
     spectrum::{ColorMode, Spectrum},
 };
 
@@ -192,6 +193,32 @@ fn slabs_reflect_and_transmit_as_adding_doubling_says() {
             );
             let precision = if expected.iter().any(|e| *e < 0.02) { 0.1 } else { 0.02 };
             assert_mean(&name, &world.measure(&VolPath::default(), 60_000), expected, precision);
+        }
+    }
+}
+
+/// A phase function as a table is the phase function: slabs of Henyey and Greenstein's, tabulated at 20,001 cosines (whose
+/// linear interpolation has the same mean cosine to 10⁻⁵), and the same blended of two other tables.
+#[test]
+fn slabs_of_tabulated_scatterers_reflect_as_those_of_the_formula() {
+    let table = |p: &dyn Fn(f32) -> f32| {
+        Phase::tabulated(&(0..=20_000).map(|i| f64::from(p(i as f32 / 1e4 - 1.0))).collect::<Vec<_>>()).unwrap()
+    };
+    for case in slab_cases().into_iter().filter(|case| case.g.abs() >= 0.5) {
+        let hg = Phase::henyey_greenstein(case.g).unwrap();
+        // p (1 ± 0.9 c) with the norms 1 ± 0.9 g, each with half its norm.
+        let halves = [1.0, -1.0].map(|sign| table(&|c| hg.eval(c) * (1.0 + sign * 0.9 * c)));
+        let blend = Phase::blend(&halves[0], &halves[1], 0.5 * (1.0 - 0.9 * case.g)).unwrap();
+        for (name, phase) in [("table", table(&|c| hg.eval(c))), ("blend", blend)] {
+            let mut world = World::seen(Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+            let skin = if case.n == 1.0 { Material::Null } else { glass(case.n, 0.0) };
+            let scattering = case.albedo.map(|a| a * case.tau);
+            let absorption = case.albedo.map(|a| (1.0 - a) * case.tau);
+            world.slab(1.0, skin, Homogeneous { phase, ..medium(absorption, scattering, 0.0) });
+            world.half_sky(1.0, 0.0);
+            let name = format!("{name}, tau {} g {} n {}", case.tau, case.g, case.n);
+            let precision = if case.reflectance.iter().any(|e| *e < 0.02) { 0.1 } else { 0.02 };
+            assert_mean(&name, &world.measure(&VolPath::default(), 60_000), case.reflectance, precision);
         }
     }
 }

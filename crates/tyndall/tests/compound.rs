@@ -153,6 +153,7 @@ fn a_light_with_holes_shines_with_what_is_left_and_one_that_is_not_there_with_al
         luminance: 1.0,
         two_sided: false,
         opacity: 0.0,
+        pattern: None,
     };
     let from = tyndall::light::Reference { p: Vec3::Y, normal: None };
     assert!(light.sample(&from, tyndall::math::Vec2::splat(0.3), &tyndall::spectrum::Wavelengths::Rgb).unwrap().dirac);

@@ -6,7 +6,7 @@ use common::{World, assert_mean, diffuse, glass, medium};
 use tyndall::{
     camera::{CameraModel, Perspective},
     film::{Crop, Filter},
-    integrator::{Analog, Integrator, VolPath},
+    integrator::{Analog, Counted, Integrator, VolPath},
     light::{Light, PointLight},
     material::{Index, Material, Roughness},
     math::Vec3,
@@ -200,7 +200,7 @@ fn energy_lost_to_a_depth_limit_is_tallied() {
     let mut world = World::seen(Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.0, 1.0, 0.5));
     world.shining_sphere(Vec3::ZERO, 1.0, diffuse(0.5), 1.0, true);
     let scene = world.scene();
-    let limited = VolPath { max_depth: Some(3), roulette: 0.0 };
+    let limited = VolPath { max_depth: Some(3), roulette: 0.0, ..VolPath::default() };
     let settings = Settings { spp: 20_000, sampler: SamplerKind::Independent, ..Settings::default() };
     let rendering = render(&scene, &limited, &settings, &());
     let mean = f64::from(rendering.film.pixel(0, 0).unwrap().mean()[0]);
@@ -208,6 +208,36 @@ fn energy_lost_to_a_depth_limit_is_tallied() {
     assert_eq!(rendering.tally.truncated_paths, 20_000);
     let carried = rendering.tally.truncated_throughput / 20_000.0;
     assert!((carried - 0.125).abs() < 1e-6, "{carried}");
+}
+
+/// A sky of radiance 1 behind two panes of `r = 0.04`, `R = 2r/(1 + r)` and `T = 1 − R`: a path that may scatter once does
+/// not get through both, and one that may scatter twice brings T². Where only turns count, one that may not turn at all
+/// does, and one that may turn twice brings what goes to and fro between them as well: T² (1 + R²).
+#[test]
+fn panes_that_are_passed_straight_count_for_a_limit_or_not() {
+    let r = 0.08 / 1.04;
+    let t2 = (1.0 - r) * (1.0 - r);
+    for (counted, max_depth, expected) in [
+        (Counted::Scatterings, 1, 0.0),
+        (Counted::Scatterings, 2, t2),
+        (Counted::Turns, 0, t2),
+        (Counted::Turns, 2, t2 * (1.0 + r * r)),
+    ] {
+        let mut world = World::seen(Vec3::new(0.0, 9.0, 0.0), Vec3::ZERO);
+        let tint = || 1.0.into();
+        let (reflection_tint, transmission_tint) = (tint(), tint());
+        let pane = Material::ThinDielectric { eta: Index::Constant(1.5), reflection_tint, transmission_tint };
+        world.cuboid(Vec3::new(-50.0, 0.0, -50.0), Vec3::new(50.0, 1.0, 50.0), pane, None);
+        world.half_sky(0.0, 1.0);
+        let limited = VolPath { max_depth: Some(max_depth), counted, roulette: 0.0 };
+        let m = world.measure(&limited, 400_000);
+        let name = format!("{counted:?} up to {max_depth}");
+        if expected == 0.0 {
+            assert_eq!(m.mean, [0.0; 3], "{name}")
+        } else {
+            assert_mean(&name, &m, [expected; 3], 2e-3)
+        }
+    }
 }
 
 /// Roulette that is capped below the albedo has infinite variance in media of albedo 1: weights grow as (1/0.95)ⁿ. Ours

@@ -6,7 +6,7 @@ use common::{World, diffuse};
 use tyndall::{
     camera::{CameraModel, Orthographic},
     feature::{Facing, Feature, Space},
-    film::{Average, Crop, Film, LayerKind},
+    film::{Average, Crop, Film, LayerKind, Recorded},
     integrator::VolPath,
     math::Vec3,
     render::{Settings, render},
@@ -31,7 +31,8 @@ fn scene(layers: &[Feature]) -> Scene {
     let mut world = World::seen(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO);
     world.camera.view.model = CameraModel::Orthographic(Orthographic { window: [-2.0, 2.0, -2.0, 2.0] });
     (world.camera.width, world.camera.height) = (40, 40);
-    let kind = |feature| LayerKind { feature, channels: Vec::new(), average: Average::Samples };
+    let kind =
+        |feature| LayerKind { recorded: Recorded::Surface(feature), channels: Vec::new(), average: Average::Samples };
     world.camera.layers = layers.iter().copied().map(kind).collect();
     world.sphere(Vec3::ZERO, 1.0, diffuse(0.6), None);
     world.cuboid(Vec3::new(-9.0, -9.0, -3.0), Vec3::new(0.0, 9.0, -1.0), diffuse(0.25), None);

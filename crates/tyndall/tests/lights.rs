@@ -3,12 +3,12 @@
 
 use testkit::{Family, Stream, chi_square};
 use tyndall::light::{
-    AreaLight, ConstantEnvironment, Distant, EmitterShape, Falloff, Light, LightId, LightTable, PointLight, Reference,
-    Revolved, SpotLight, Target,
+    AreaLight, Beam, ConstantEnvironment, Distant, EmitterShape, Even, Falloff, Goniometric, Light, LightId,
+    LightTable, PointLight, Portal, Projector, Reference, Revolved, SkyImage, Slide, SpotLight, Target,
 };
 use tyndall::math::{Ray, Transform, Vec2, Vec3};
 use tyndall::sampling::warp;
-use tyndall::shape::{Cylinder, Disk, Geometry, GeometryBuilder, Shape, ShapeError, Sphere, SpherePart, Turn};
+use tyndall::shape::{Cylinder, Disk, Geometry, GeometryBuilder, Patch, Shape, ShapeError, Sphere, SpherePart, Turn};
 use tyndall::spectrum::{Spectrum, Wavelengths};
 
 fn next_2d(stream: &mut Stream) -> Vec2 {
@@ -28,18 +28,31 @@ fn point(position: Vec3, luminance: f32) -> Light {
 }
 
 fn area(shape: EmitterShape, luminance: f32, two_sided: bool) -> Light {
-    Light::Area(AreaLight { shape, radiance: Spectrum::constant(luminance), luminance, two_sided, opacity: 1.0 })
+    Light::Area(AreaLight {
+        shape,
+        radiance: Spectrum::constant(luminance),
+        luminance,
+        two_sided,
+        opacity: 1.0,
+        pattern: None,
+    })
 }
 
 fn triangle(a: Vec3, e1: Vec3, e2: Vec3) -> EmitterShape {
     EmitterShape::Triangle { a, e1, e2, ng: e1.cross(e2).normalize_or_zero() }
 }
 
+/// A space at `at` with +z along `axis`.
+fn placed(at: Vec3, axis: Vec3) -> Transform {
+    let turn = glam::DQuat::from_rotation_arc(glam::DVec3::Z, axis.as_dvec3().normalize());
+    Transform::new(glam::DMat4::from_rotation_translation(turn, at.as_dvec3())).unwrap()
+}
+
 /// A light of any kind near `at`.
 fn any_light(stream: &mut Stream, at: Vec3) -> Light {
     let luminance = 0.01 + stream.next_f32().powi(8) * 100.0;
     let (d, e) = (next_direction(stream), next_direction(stream));
-    match (stream.next_f32() * 8.0) as u32 {
+    match (stream.next_f32() * 12.0) as u32 {
         0 => point(at, luminance),
         1 => Light::Spot(SpotLight {
             position: at,
@@ -49,7 +62,31 @@ fn any_light(stream: &mut Stream, at: Vec3) -> Light {
             cos_inner: 0.9,
             cos_outer: -0.2 + stream.next_f32(),
             falloff: Falloff::LinearAngle,
+            slide: None,
         }),
+        8 => Light::Beam(Beam {
+            shape: triangle(at, d * 0.3, e * 0.4),
+            exitance: Spectrum::constant(luminance),
+            luminance,
+        }),
+        9 => Light::Goniometric(Box::new(Goniometric {
+            to_world: placed(at, d),
+            intensity: Spectrum::constant(luminance),
+            luminance,
+            side: 2,
+            shares: vec![0.0, 0.3, 1.0, 0.0],
+        })),
+        10 => Light::Projector(Box::new(Projector {
+            position: at,
+            slide: Slide { to_world: placed(at, d), half: Vec2::new(0.7, 0.4), texture: 1.0.into() },
+            intensity: Spectrum::constant(luminance),
+            even: if e.x > 0.0 { Even::Intensity } else { Even::Irradiance },
+            luminance,
+        })),
+        11 => {
+            let corners = [Vec3::ZERO, d * 0.1, e * 0.05, d.cross(e) * 0.1 + (d + e) * 0.05].map(|c| at + c);
+            area(EmitterShape::Patch(Patch::new(corners)), luminance, e.x > 0.0)
+        }
         2 => area(EmitterShape::Sphere { centre: at, radius: 0.01, inward: e.x > 0.0 }, luminance, false),
         3 => area(EmitterShape::Disk { centre: at, ng: d, radius: 0.03, inner: 0.01 }, luminance, e.x > 0.0),
         4 => {
@@ -74,6 +111,9 @@ fn scenes() -> Vec<(&'static str, Vec<Light>)> {
     with_skies.push(Light::Constant(ConstantEnvironment { radiance: Spectrum::constant(0.3), luminance: 0.3 }));
     let sun = |towards| Light::Distant(Distant { towards, irradiance: Spectrum::constant(2.0), luminance: 2.0 });
     with_skies.extend([sun(Vec3::Z), sun(Vec3::X)]);
+    let window = [Vec3::ZERO, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::X];
+    let sky = SkyImage::new(1, 1, &[[0.4; 3]], 1.0).unwrap();
+    with_skies.push(Light::Portal(Box::new(Portal::new(window, &Transform::IDENTITY, &sky).unwrap())));
     let ceiling = (0..300).map(|_| {
         let at = Vec3::new(s.next_f32(), s.next_f32(), 1.0);
         area(triangle(at, Vec3::Y * 0.02, Vec3::X * 0.02), 1.0, false)
@@ -240,7 +280,7 @@ fn light_sampling_and_rays_find_the_same_surfaces_of_revolution() {
             let ray = Ray::new(from.p, warp::cosine_hemisphere(u));
             if let Some(hit) = geometry.intersect(&ray, f32::INFINITY) {
                 let at = geometry.interaction(&ray, &hit);
-                by_sky += f64::from(light.le(at.ng, -ray.dir, &Wavelengths::Rgb).lane(0));
+                by_sky += f64::from(light.le(at.ng, -ray.dir, || (&at).into(), &Wavelengths::Rgb).lane(0));
             }
         }
         let (by_light, by_sky) = (by_light / f64::from(N * N), by_sky * std::f64::consts::PI / f64::from(N * N));

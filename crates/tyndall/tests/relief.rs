@@ -8,12 +8,14 @@ use common::{World, assert_mean, diffuse, glass, measure, medium};
 use testkit::Stream;
 use tyndall::{
     bsdf::{Bsdf, Sides},
+    feature::{Facing, Feature, FirstHit, Space},
     integrator::{Analog, Integrator, VolPath},
     light::{Distant, Light},
     material::{Material, Metal, Roughness},
     math::{Ray, Transform, Vec2, Vec3},
     path::Vertex,
     relief::{Map, Relief, Rule},
+    sampling::{Sampler, SamplerKind},
     scene::{MaterialId, Scene},
     shape::Mesh,
     spectrum::{Lanes, Spectrum, Wavelengths},
@@ -131,6 +133,26 @@ fn a_flat_relief_is_none() {
                 assert!(found.1.is_none_or(|alpha2| alpha2 < 1e-10), "{rule:?}: {found:?}");
             }
         }
+    }
+}
+
+/// The layer of shading normals has those of the relief, that of true normals has not.
+#[test]
+fn the_layer_of_shading_normals_shows_the_relief() {
+    let mut world = World::seen(Vec3::Y * 5.0, Vec3::ZERO);
+    let material = embossed(&mut world, diffuse(0.6), leaning([0.6, 0.0, 0.8]), MITSUBA);
+    plate(&mut world, material);
+    world.sky(1.0);
+    let scene = world.scene();
+    let ray = scene.camera.view.ray(Vec2::splat(0.4), Vec2::splat(0.5));
+    let first = FirstHit::of(&scene, ray);
+    let mut sampler = Sampler::new(SamplerKind::Independent, (0, 0), 0, 1);
+    for (feature, expected) in [
+        (Feature::ShadingNormal(Space::World, Facing::Outward), Vec3::new(0.6, 0.8, 0.0)),
+        (Feature::GeometricNormal(Space::World, Facing::Outward), Vec3::Y),
+    ] {
+        let [x, y, z, weight] = first.sample(feature, &Wavelengths::Rgb, &mut sampler);
+        assert!((Vec3::new(x, y, z) / weight - expected).length() < 1e-5, "{feature:?}: {x} {y} {z}");
     }
 }
 

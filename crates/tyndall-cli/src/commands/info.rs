@@ -2,7 +2,7 @@
 
 use std::{fmt::Write, io::IsTerminal, process::ExitCode};
 
-use tyndall::{light::Light, math::Vec3, spectrum::ColorMode};
+use tyndall::{light::Light, math::Vec3};
 use tyndall_formats::{
     desc::{LengthUnit, SceneDesc},
     error::Diagnostics,
@@ -17,7 +17,7 @@ use crate::{
 
 /// Loads a scene and tells what is in it.
 pub(crate) fn run(options: &InfoOptions) -> anyhow::Result<ExitCode> {
-    let loaded = load(&options.input, None, ColorMode::Rgb)?;
+    let loaded = load(&options.input, None, None)?;
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = describe(&mut out, &loaded);

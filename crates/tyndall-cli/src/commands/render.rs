@@ -34,17 +34,11 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     interrupt::listen()?;
     let outputs = Outputs::new(&options.output, &options.input.scene, options.tone.into())?;
     outputs.check()?;
-    let loaded = load(&options.input, options.resolution, color_mode(options.color))?;
+    let pool = pool(options.threads)?;
+    let loaded = pool.install(|| load(&options.input, options.resolution, options.color.map(color_mode)))?;
     loaded.warn();
     let settings = settings(options, &loaded)?;
-    let job = Job {
-        options,
-        loaded: &loaded,
-        settings,
-        outputs: &outputs,
-        pool: pool(options.threads)?,
-        start: Instant::now(),
-    };
+    let job = Job { options, loaded: &loaded, settings, outputs: &outputs, pool, start: Instant::now() };
 
     let cpu = ProcessTime::now();
     let rendering = job.render();
@@ -85,8 +79,9 @@ struct Job<'a> {
 impl Job<'_> {
     fn render(&self) -> Rendering {
         let Self { options, loaded, settings, .. } = self;
-        let max_depth = options.max_depth.or(loaded.desc.integrator.max_depth.map(|depth| depth.value));
-        let integrator = integrator(options.integrator, max_depth);
+        let said = &loaded.desc.integrator;
+        let max_depth = options.max_depth.or(said.max_depth.map(|depth| depth.value));
+        let integrator = integrator(options.integrator, max_depth, said.counted);
         let camera = &loaded.scene.camera;
         let crop = settings.crop.unwrap_or(Crop::full(camera.width, camera.height));
         let pixels = u64::from(crop.width()) * u64::from(crop.height());
@@ -115,7 +110,7 @@ impl Job<'_> {
             scene: options.input.scene.display().to_string(),
             scene_hash: loaded.hash.clone(),
             integrator: word(&options.integrator),
-            color: word(&options.color),
+            color: word(&color_name(loaded.scene.color)),
             sampler: word(&options.sampler),
             spp: if settings.spp == u32::MAX { 0 } else { settings.spp },
             samples_per_pixel: samples_per_pixel(film),
@@ -186,6 +181,14 @@ pub(crate) fn color_mode(name: ColorName) -> ColorMode {
         ColorName::Rgb => ColorMode::Rgb,
         ColorName::Mono => ColorMode::Mono,
         ColorName::Spectral => ColorMode::Spectral,
+    }
+}
+
+fn color_name(mode: ColorMode) -> ColorName {
+    match mode {
+        ColorMode::Rgb => ColorName::Rgb,
+        ColorMode::Mono => ColorName::Mono,
+        ColorMode::Spectral => ColorName::Spectral,
     }
 }
 

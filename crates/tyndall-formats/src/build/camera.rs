@@ -4,15 +4,18 @@ use std::path::Path;
 
 use tyndall::{
     camera::{
-        Batch, Camera, CameraModel, Element, IrradianceMeter, LensSystem, Orthographic, Perspective, RadianceMeter,
-        Realistic, Spherical, SphericalMapping, Stop, ThinLens, View,
+        Batch, Camera, CameraModel, Distant, Element, IrradianceMeter, LensSystem, Orthographic, Perspective,
+        RadianceMeter, Realistic, Spherical, SphericalMapping, Stop, Surface, Target, ThinLens, View,
     },
     film::{Filter, Kernel, Lobed},
 };
 
 use super::{Builder, medium_id, shapes::Shapes};
 use crate::{
-    desc::{ApertureDesc, CameraDesc, CameraKind, FilmDesc, FilterDesc, RealisticDesc, SphereMapping},
+    desc::{
+        ApertureDesc, CameraDesc, CameraKind, DistantTarget, FilmDesc, FilterDesc, RealisticDesc, ShapeDesc,
+        SphereMapping,
+    },
     error::SceneError,
     image,
     source::Span,
@@ -25,12 +28,15 @@ const LARGEST_LENS_FILE: u64 = 1 << 20;
 /// Values a side of a stop that is drawn here.
 const STOP_SIDE: usize = 256;
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
     pub(super) fn camera(&mut self, shapes: &Shapes) -> Option<Camera> {
         let (camera, film) = (&self.desc.camera, &self.desc.film);
         let view = self.view(camera, film, shapes)?;
         // A meter's pixels are parts of its surface, which ends where they end.
-        let is_meter = matches!(view.model, CameraModel::IrradianceMeter(_) | CameraModel::RadianceMeter(_));
+        let is_meter = matches!(
+            view.model,
+            CameraModel::IrradianceMeter(_) | CameraModel::RadianceMeter(_) | CameraModel::Distant(_)
+        );
         let filter = if is_meter { Filter::default() } else { self.filter(&film.filter, film.span)? };
         Some(Camera {
             view,
@@ -43,7 +49,7 @@ impl Builder<'_> {
         })
     }
 
-    fn view(&mut self, camera: &CameraDesc, film: &FilmDesc, shapes: &Shapes) -> Option<View> {
+    fn view(&mut self, camera: &'a CameraDesc, film: &FilmDesc, shapes: &Shapes) -> Option<View> {
         let window =
             camera.window(film.width, film.height).map(|w| [w.left, w.right, w.bottom, w.top].map(|v| v as f32));
         let mut to_world = camera.to_world;
@@ -64,10 +70,24 @@ impl Builder<'_> {
             CameraKind::IrradianceMeter { shape } => {
                 to_world = glam::DMat4::IDENTITY;
                 let pieces = shapes.meters.get(shape).cloned()?;
-                match IrradianceMeter::new(pieces) {
-                    Some(meter) => CameraModel::IrradianceMeter(meter),
+                match Surface::new(pieces) {
+                    Some(surface) => CameraModel::IrradianceMeter(IrradianceMeter { surface }),
                     None => return self.fail(SceneError::at(camera.span, "this shape has no area to measure at")),
                 }
+            }
+            CameraKind::Distant { target } => {
+                let disk = shapes.geometry.bounds();
+                let (centre, radius) = if disk.is_empty() {
+                    (tyndall::math::Vec3::ZERO, 0.0)
+                } else {
+                    (disk.centre(), 0.5 * disk.extent().length())
+                };
+                let target = match target {
+                    DistantTarget::Scene => Target::Disk,
+                    DistantTarget::Point(p) => Target::Point(glam::DVec3::from_array(*p).as_vec3()),
+                    DistantTarget::Shape(shape) => Target::Surface(self.surface_of(shape)?),
+                };
+                CameraModel::Distant(Distant { centre, radius, target })
             }
             CameraKind::Batch(cameras) => {
                 to_world = glam::DMat4::IDENTITY;
@@ -77,7 +97,19 @@ impl Builder<'_> {
         Some(View { to_world: self.transform(to_world, camera.span)?, model })
     }
 
-    fn batch(&mut self, batch: &CameraDesc, cameras: &[CameraDesc], film: &FilmDesc, shapes: &Shapes) -> Option<Batch> {
+    /// The surface of a shape that is not part of the scene.
+    fn surface_of(&mut self, shape: &'a ShapeDesc) -> Option<Surface> {
+        let pieces = self.surface_pieces(shape)?;
+        Surface::new(pieces).or_else(|| self.fail(SceneError::at(shape.span, "this shape has no area to be seen")))
+    }
+
+    fn batch(
+        &mut self,
+        batch: &CameraDesc,
+        cameras: &'a [CameraDesc],
+        film: &FilmDesc,
+        shapes: &Shapes,
+    ) -> Option<Batch> {
         let width = film.width / cameras.len().max(1) as u32;
         let part = FilmDesc { width: width.max(1), ..film.clone() };
         let mut views = Vec::new();

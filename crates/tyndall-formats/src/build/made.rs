@@ -57,6 +57,8 @@ pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::DiffuseTransmission { .. }
         | MaterialKind::Plastic { .. }
+        | MaterialKind::Principled(_)
+        | MaterialKind::PrincipledThin(_)
         | MaterialKind::Coated(_)
         | MaterialKind::Measured { .. }
         | MaterialKind::Interface => &[],

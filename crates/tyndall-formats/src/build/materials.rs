@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use tyndall::{
     bsdf::{
-        Sides, internal_reflectance,
+        RoughCoat, SMOOTHEST_ALPHA, Sides, internal_reflectance,
         measured::Tables,
-        microfacet::{Distribution, Shadowing},
+        microfacet::{Distribution, Microfacets, Shadowing},
     },
     material::{CoatedBase, CoatedMaterial, Index, Material, Metal, Roughness},
     relief::{Map, Relief},
@@ -85,19 +85,25 @@ impl Builder<'_> {
                     scale: *scale as f32,
                 })
             }
-            MaterialKind::Plastic { eta, reflectance, nonlinear, tint } => {
+            MaterialKind::Plastic { eta, reflectance, nonlinear, roughness, tint } => {
                 let Index::Constant(coat) = self.index(eta)? else {
                     return self.fail(SceneError::at(eta.span, "the index of this coat is one number"));
                 };
-                Some(Material::Plastic {
-                    eta: coat,
-                    internal: internal_reflectance(coat),
-                    reflectance: self.texture(reflectance, Measure::Share)?,
-                    nonlinear: *nonlinear,
-                    tint: self.tint(tint.as_ref())?,
-                    sides,
+                let reflectance = self.texture(reflectance, Measure::Share)?;
+                let (nonlinear, tint) = (*nonlinear, self.tint(tint.as_ref())?);
+                Some(match roughness {
+                    None => {
+                        let internal = internal_reflectance(coat);
+                        Material::Plastic { eta: coat, internal, reflectance, nonlinear, tint, sides }
+                    }
+                    Some(roughness) => {
+                        let coat = self.rough_coat(coat, roughness)?;
+                        Material::RoughPlastic { coat, reflectance, nonlinear, tint, sides }
+                    }
                 })
             }
+            MaterialKind::Principled(desc) => self.principled(desc, sides),
+            MaterialKind::PrincipledThin(desc) => self.principled_thin(desc),
             MaterialKind::Coated(coated) => self.coated(coated).map(|coated| Material::Coated(Box::new(coated))),
             MaterialKind::Measured { path } => self.measured(path).map(|tables| Material::Measured { tables, sides }),
             MaterialKind::Interface => Some(Material::Null),
@@ -213,6 +219,24 @@ impl Builder<'_> {
             ShadowingKind::Separable => Shadowing::Separable,
         };
         u.zip(v).map(|(u, v)| Roughness { u, v, remap: desc.remap, distribution, shadowing })
+    }
+
+    /// The coat of a plastic, tabulated once.
+    fn rough_coat(&mut self, eta: f32, desc: &RoughnessDesc) -> Option<Arc<RoughCoat>> {
+        let Some([alpha, _]) = desc.alpha().filter(|[u, v]| u == v) else {
+            let error =
+                SceneError::at(desc.u.span, "the coat of a plastic is equally rough everywhere, in all directions");
+            return self.fail(error.help("give one number, \"alpha\""));
+        };
+        let Roughness { distribution, shadowing, .. } = self.roughness(desc)?;
+        let alpha = (alpha as f32).max(SMOOTHEST_ALPHA);
+        let microfacets = Microfacets { alpha_x: alpha, alpha_y: alpha, distribution, shadowing };
+        if let Some(made) = self.coats.iter().find(|coat| coat.eta == eta && coat.microfacets == microfacets) {
+            return Some(Arc::clone(made));
+        }
+        let made = Arc::new(RoughCoat::new(eta, microfacets));
+        self.coats.push(Arc::clone(&made));
+        Some(made)
     }
 
     fn tint(&mut self, tint: Option<&Spanned<Varying>>) -> Option<Texture> {

@@ -5,7 +5,7 @@ use tyndall::{
     phase::{Isotropic, Phase, Rayleigh},
     spectrum::{Role, Sampled, Spectrum},
 };
-use tyndall_optics::measured;
+use tyndall_optics::{half_space::HalfSpace, measured};
 
 use super::{Builder, spectra::Measure};
 use crate::{
@@ -24,7 +24,7 @@ impl Builder<'_> {
             Some(emission) => Some(self.emission(emission)?),
             None => None,
         };
-        let (sigma_a, sigma_s) = self.coefficients(&desc.coefficients)?;
+        let (sigma_a, sigma_s) = self.coefficients(desc)?;
         let phase = match &desc.coefficients {
             Coefficients::Preset { name, reduced: false } => self.measured_phase(name)?,
             _ => self.phase(&desc.phase)?,
@@ -33,14 +33,53 @@ impl Builder<'_> {
         Some(Homogeneous { sigma_a, sigma_s, emission, phase })
     }
 
-    fn coefficients(&mut self, coefficients: &Coefficients) -> Option<(Spectrum, Spectrum)> {
-        match coefficients {
+    fn coefficients(&mut self, desc: &MediumDesc) -> Option<(Spectrum, Spectrum)> {
+        match &desc.coefficients {
             Coefficients::Preset { name, reduced } => self.preset(name, *reduced),
             Coefficients::AbsorptionScattering { sigma_a, sigma_s } => {
                 Some((self.spectrum(sigma_a, Measure::Coefficient)?, self.spectrum(sigma_s, Measure::Coefficient)?))
             }
+            Coefficients::PerMillimetre { sigma_a, sigma_s } => {
+                let sigma = [sigma_a, sigma_s].map(|sigma| self.spectrum(sigma, Measure::Coefficient));
+                let [sigma_a, sigma_s] = sigma.map(|sigma| Some(sigma?.scaled(self.millimetres())));
+                Some((sigma_a?, sigma_s?))
+            }
+            Coefficients::Reflectance { reflectance, mfp, eta } => self.of_colour(reflectance, mfp, *eta, &desc.phase),
             Coefficients::ExtinctionAlbedo { sigma_t, albedo } => self.extinction_albedo(sigma_t, albedo),
         }
+    }
+
+    /// A scene unit [mm].
+    fn millimetres(&self) -> f32 {
+        self.desc.options.unit.value.millimetres() as f32
+    }
+
+    /// The medium whose half-space, under a smooth boundary, returns this share of the light that enters it.
+    fn of_colour(
+        &mut self,
+        reflectance: &Spanned<SpectrumDesc>,
+        mfp: &Spanned<SpectrumDesc>,
+        eta: f64,
+        phase: &PhaseDesc,
+    ) -> Option<(Spectrum, Spectrum)> {
+        let share = self.spectrum(reflectance, Measure::Share)?;
+        let path = self.spectrum(mfp, Measure::Coefficient)?;
+        let g = if let PhaseDesc::HenyeyGreenstein { g } = phase { g.value } else { 0.0 };
+        let half_space = HalfSpace::new(g, eta);
+        let (albedo, unit) = (|share: f32| half_space.albedo(f64::from(share)) as f32, self.millimetres());
+        let sigma_t = |path: f32| unit / path;
+        let smallest = (360..=830).map(|l| path.at(l as f32)).chain(path.rgb()).fold(f32::INFINITY, f32::min);
+        if !sigma_t(smallest).is_finite() {
+            return self
+                .fail(SceneError::at(mfp.span, format!("{smallest} is no mean free path")).help("it is positive"));
+        }
+        let coefficient = |of: &dyn Fn(f32, f32) -> f32| {
+            per_wavelength(|l| of(share.at(l), path.at(l)), std::array::from_fn(|c| of(share.rgb()[c], path.rgb()[c])))
+        };
+        Some((
+            coefficient(&|share, path| (1.0 - albedo(share)) * sigma_t(path)),
+            coefficient(&|share, path| albedo(share) * sigma_t(path)),
+        ))
     }
 
     /// Measured coefficients [1/mm], in the scene's unit.
@@ -51,7 +90,7 @@ impl Builder<'_> {
                     .suggest(&name.value, measured::names().collect::<Vec<_>>()),
             );
         };
-        let per_unit = self.desc.options.unit.value.millimetres() as f32;
+        let per_unit = self.millimetres();
         let spectrum = |rgb: [f32; 3]| Spectrum::unbounded_rgb(rgb.map(|v| v * per_unit));
         if reduced {
             return Some((spectrum(m.sigma_a), spectrum(m.sigma_s_reduced)));
@@ -102,6 +141,17 @@ impl Builder<'_> {
                     SceneError::at(g.span, e.to_string()).help("g is the mean cosine: 0 isotropic, towards 1 forward"),
                 ),
             },
+            PhaseDesc::Tabulated { values } => match Phase::tabulated(&values.value) {
+                Ok(phase) => Some(phase),
+                Err(e) => self.fail(SceneError::at(values.span, e.to_string())),
+            },
+            PhaseDesc::Blend { of, weight } => {
+                let [first, second] = [self.phase(&of[0])?, self.phase(&of[1])?];
+                match Phase::blend(&first, &second, weight.value as f32) {
+                    Ok(phase) => Some(phase),
+                    Err(e) => self.fail(SceneError::at(weight.span, e.to_string())),
+                }
+            }
         }
     }
 }
@@ -116,15 +166,19 @@ fn channels(spectrum: &SpectrumDesc) -> Option<[f64; 3]> {
 
 /// A spectrum times a share of it, at every nanometre; the colour is the product of the two colours, as Mitsuba has it.
 fn product(spectrum: &Spectrum, share: impl Fn(f32) -> f32, share_rgb: [f32; 3]) -> Spectrum {
-    let (lambda, values): (Vec<_>, Vec<_>) =
-        (360..=830).map(|l| (l as f32, (spectrum.at(l as f32) * share(l as f32)).max(0.0))).unzip();
+    let rgb = spectrum.rgb();
+    per_wavelength(|l| spectrum.at(l) * share(l), std::array::from_fn(|c| rgb[c] * share_rgb[c]))
+}
+
+/// A coefficient at every nanometre, and as a colour.
+fn per_wavelength(at: impl Fn(f32) -> f32, rgb: [f32; 3]) -> Spectrum {
+    let (lambda, values): (Vec<_>, Vec<_>) = (360..=830).map(|l| (l as f32, at(l as f32).max(0.0))).unzip();
     match Sampled::new(&lambda, &values, Role::Reflectance) {
         Ok(mut sampled) => {
-            let rgb = spectrum.rgb();
-            sampled.rgb = std::array::from_fn(|c| (rgb[c] * share_rgb[c]).max(0.0));
+            sampled.rgb = rgb.map(|v| v.max(0.0));
             Spectrum::Sampled(sampled)
         }
-        // Both factors are finite: this is not reached.
+        // All values are finite: this is not reached.
         Err(_) => Spectrum::Constant(0.0),
     }
 }

@@ -1,10 +1,14 @@
 //! From what the user wrote to what is rendered: reads meshes and images, converts units, checks the physics.
 
 mod camera;
+mod emitters;
 mod lights;
 pub(crate) mod made;
 mod materials;
 mod media;
+mod meshes;
+mod painted;
+mod principled;
 mod shapes;
 mod spectra;
 mod textures;
@@ -16,8 +20,13 @@ use std::{collections::HashMap, path::PathBuf, sync::Arc};
 
 use glam::DMat4;
 use tyndall::{
-    bsdf::measured::Tables, film::Crop, light::LightTable, math::Transform, scene::Scene, spectrum::ColorMode,
-    texture::Texture,
+    bsdf::{RoughCoat, measured::Tables},
+    film::Crop,
+    light::LightTable,
+    math::Transform,
+    scene::Scene,
+    spectrum::ColorMode,
+    texture::{Texture, attribute::Painted},
 };
 
 use crate::{
@@ -26,6 +35,7 @@ use crate::{
     source::{SourceMap, Span},
 };
 use made::Made;
+use meshes::Meshes;
 use spectra::Measure;
 use textures::Pictures;
 
@@ -51,6 +61,11 @@ struct Builder<'a> {
     pictures: Pictures,
     /// Measured materials by file.
     measured: Vec<(PathBuf, Arc<Tables>)>,
+    /// Coats of rough plastics, each tabulated once.
+    coats: Vec<Arc<RoughCoat>>,
+    meshes: Meshes,
+    /// Colours of meshes: of vertices, and of faces.
+    painted: [Arc<Painted>; 2],
     made: Made,
     color: ColorMode,
 }
@@ -64,6 +79,9 @@ impl<'a> Builder<'a> {
             pictures: Pictures::new(),
             measured: Vec::new(),
             color,
+            coats: Vec::new(),
+            meshes: Meshes::new(desc),
+            painted: [Arc::default(), Arc::default()],
             made: Made::new(desc.materials.len()),
         }
     }
@@ -71,9 +89,16 @@ impl<'a> Builder<'a> {
 
 impl Builder<'_> {
     fn scene(&mut self) -> Option<Scene> {
+        if self.desc.film.color() == ColorMode::Spectral && self.color != ColorMode::Spectral {
+            return self.fail(
+                SceneError::at(self.desc.film.span, "this film records wavelengths, and the render has colours only")
+                    .help("render it with --color spectral"),
+            );
+        }
+        // First the shapes: textures may show the colours of meshes.
+        let shapes = self.shapes();
         let materials = self.materials();
         let media = self.desc.media.iter().map(|m| self.medium(m)).collect::<Vec<_>>();
-        let shapes = self.shapes();
         let lights = self.lights();
         let camera = shapes.as_ref().and_then(|shapes| self.camera(shapes));
         let mut materials = materials?;

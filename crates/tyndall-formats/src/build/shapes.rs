@@ -1,23 +1,25 @@
-//! Shapes, groups, instances, and the lights that shapes are.
+//! Shapes, groups and instances.
 
 use std::collections::HashMap;
 
 use tyndall::{
-    light::{AreaLight, EmitterShape, Light, LightId, Revolved},
+    light::{EmitterShape, Light},
     math::{Transform, Vec2, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
-    shape::{
-        Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, Shape, ShapeError, Sphere, Turn,
-    },
+    shape::{Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, ShapeError, Sphere},
     texture::TexturePoint,
 };
 
-use super::{Builder, material_id, medium_id, spectra::Measure};
+use super::{
+    Builder,
+    emitters::{Pieces, Shining, pieces},
+    material_id, medium_id,
+    painted::Painting,
+    spectra::Measure,
+};
 use crate::{
-    desc::{
-        AreaLightDesc, DisplacementDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind,
-    },
+    desc::{DisplacementDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
     error::SceneError,
     mesh::{MeshError, TriangleMesh, displace, read_obj, read_ply, read_serialized, subdivide},
 };
@@ -36,8 +38,8 @@ pub(super) struct Shapes {
 struct Gathered<'a> {
     builder: GeometryBuilder,
     objects: Vec<Object>,
-    /// Objects that shine, with what, and how much of them is there.
-    emitters: Vec<(ObjectId, &'a AreaLightDesc, f32)>,
+    emitters: Vec<Shining<'a>>,
+    painting: Painting,
 }
 
 /// The normals of a mesh from a file.
@@ -86,24 +88,29 @@ impl<'a> Builder<'a> {
             Ok(geometry) => geometry,
             Err(e) => return self.fail(SceneError::new(e.to_string())),
         };
+        self.paint(&geometry, gathered.painting);
         let mut lights = Vec::new();
-        for (object, emission, opacity) in gathered.emitters {
-            let emission = self.emitters(&geometry, object, emission, opacity, &mut lights)?;
-            gathered.objects[object.0 as usize].emission = emission;
+        for shining in &gathered.emitters {
+            let emission = self.emitters(&geometry, shining, &mut lights)?;
+            gathered.objects[shining.object.0 as usize].emission = emission;
         }
         let mut meters = HashMap::new();
         for (index, objects) in objects {
-            let pieces: Result<Vec<_>, _> = objects.map(|object| pieces(&geometry, ObjectId(object))).collect();
-            match pieces {
-                Ok(pieces) => meters.insert(index, pieces.into_iter().flat_map(Pieces::into_shapes).collect()),
-                Err(what) => {
-                    let message = format!("a meter on {what} is not known yet");
-                    let error = SceneError::not_yet(desc.shapes[index].span, message);
-                    return self.fail(error.help("use a mesh of triangles"));
-                }
-            };
+            meters.insert(index, surfaces(&geometry, objects));
         }
         Some(Shapes { geometry, objects: gathered.objects, lights, meters })
+    }
+
+    /// The surface of a shape on its own.
+    pub(super) fn surface_pieces(&mut self, shape: &'a ShapeDesc) -> Option<Vec<EmitterShape>> {
+        let mut gathered = Gathered::default();
+        self.shape(&mut gathered, shape)?;
+        let objects = 0..gathered.objects.len() as u32;
+        let geometry = match gathered.builder.build() {
+            Ok(geometry) => geometry,
+            Err(e) => return self.fail(SceneError::at(shape.span, e.to_string())),
+        };
+        Some(surfaces(&geometry, objects))
     }
 
     fn group(&mut self, gathered: &mut Gathered<'a>, group: &'a GroupDesc) -> GroupId {
@@ -147,10 +154,13 @@ impl<'a> Builder<'a> {
             }
             ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = match displacement {
-                    None => read_ply(&path.value),
+                let mut mesh = match displacement {
+                    None => self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)),
                     Some(displacement) => self.displaced(path, displacement, &transform)?,
                 };
+                if let Ok(mesh) = &mut mesh {
+                    self.keep_colours(mesh, gathered.objects.len() as u32, &mut gathered.painting);
+                }
                 let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
@@ -164,12 +174,14 @@ impl<'a> Builder<'a> {
             }
             ShapeKind::Serialized { path, index, face_normals } => {
                 let normals = Normals::asked(*face_normals, true);
-                let mesh = self.mesh_file(read_serialized(&path.value, *index), path, normals, false)?;
+                let mesh = self.meshes.get((path.value.clone(), *index), || read_serialized(&path.value, *index));
+                let mesh = self.mesh_file(mesh, path, normals, false)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
             ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
                 let normals = Normals::asked(*face_normals, *smooth_normals);
-                let mesh = self.mesh_file(read_obj(&path.value), path, normals, *flip_tex_coords)?;
+                let mesh = self.meshes.get((path.value.clone(), 0), || read_obj(&path.value));
+                let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
             }
         };
@@ -247,18 +259,10 @@ impl<'a> Builder<'a> {
             emission: Emission::None,
             body,
         });
-        if let Some(emission) = &desc.emission {
-            let opacity = match desc.opacity.as_ref().map(|opacity| (opacity.value.number(), opacity.span)) {
-                None => 1.0,
-                Some((Some(opacity), _)) => opacity as f32,
-                Some((None, span)) => {
-                    return self.fail(
-                        SceneError::not_yet(span, "a texture for the alpha of a shape that shines is not known yet")
-                            .help("give a number"),
-                    );
-                }
-            };
-            gathered.emitters.push((object, emission, opacity));
+        if let Some(light) = &desc.emission {
+            let by_face =
+                !matches!(desc.kind, ShapeKind::Sphere { .. } | ShapeKind::Disk { .. } | ShapeKind::BilinearMesh(_));
+            gathered.emitters.push(Shining { object, light, opacity: desc.opacity.as_ref(), by_face });
         }
         Some(())
     }
@@ -298,7 +302,7 @@ impl<'a> Builder<'a> {
     ) -> Option<Result<TriangleMesh, MeshError>> {
         let texture = self.texture(&displacement.height, Measure::Number)?;
         // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
-        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO });
+        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO, part: None });
         let length = |a: Vec3, b: Vec3| {
             let along = transform.matrix.as_dmat4().transform_vector3(b.as_dvec3() - a.as_dvec3());
             along.length()
@@ -307,124 +311,18 @@ impl<'a> Builder<'a> {
             displace(mesh, length, displacement.edge_length, height)
                 .map_err(|problem| MeshError { path: path.value.clone(), problem })
         };
-        Some(read_ply(&path.value).and_then(displace))
-    }
-
-    /// The lights of a shining object, added to `lights`.
-    fn emitters(
-        &mut self,
-        geometry: &Geometry,
-        object: ObjectId,
-        desc: &AreaLightDesc,
-        opacity: f32,
-        lights: &mut Vec<Light>,
-    ) -> Option<Emission> {
-        let radiance = self.emission(&desc.radiance)?;
-        let luminance = radiance.luminance();
-        if radiance.is_zero() {
-            return Some(Emission::None);
-        }
-        let first = LightId(lights.len() as u32);
-        let mut shine = |shape: EmitterShape| {
-            let radiance = radiance.clone();
-            lights.push(Light::Area(AreaLight { shape, radiance, luminance, opacity, two_sided: desc.two_sided }));
-        };
-        match pieces(geometry, object) {
-            Ok(Pieces::Whole(shape)) => shine(shape),
-            Ok(Pieces::Each(shapes)) => {
-                shapes.into_iter().for_each(shine);
-                return Some(Emission::EachPrimitive(first));
-            }
-            Err(what) => return self.cannot_shine(desc, what),
-        }
-        Some(Emission::Whole(first))
-    }
-
-    fn cannot_shine<T>(&mut self, desc: &AreaLightDesc, what: &str) -> Option<T> {
-        self.fail(
-            SceneError::at(desc.span, format!("light from {what} is not known yet")).help("use a mesh of triangles"),
-        )
+        Some(self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)).and_then(displace))
     }
 }
 
-/// The surface of an object, as it can be sampled.
-enum Pieces {
-    /// All of it at once.
-    Whole(EmitterShape),
-    /// A piece for each primitive.
-    Each(Vec<EmitterShape>),
-}
-
-impl Pieces {
-    fn into_shapes(self) -> Vec<EmitterShape> {
-        match self {
-            Self::Whole(shape) => vec![shape],
-            Self::Each(shapes) => shapes,
-        }
-    }
-}
-
-/// The surface of an object; or what it is, if it cannot be sampled.
-fn pieces(geometry: &Geometry, object: ObjectId) -> Result<Pieces, &'static str> {
-    Ok(Pieces::Whole(match geometry.shape(object) {
-        Shape::Sphere(sphere) => match sphere.round() {
-            Some((centre, radius)) => EmitterShape::Sphere { centre, radius, inward: sphere.reversed },
-            None => EmitterShape::Revolved(Revolved::sphere(sphere)),
-        },
-        Shape::Disk(disk) => match disk.radius().filter(|_| disk.turn == Turn::FULL) {
-            Some(radius) => {
-                EmitterShape::Disk { centre: disk.centre, ng: disk.normal(), radius, inner: disk.inner * radius }
-            }
-            None => EmitterShape::Revolved(Revolved::disk(disk)),
-        },
-        Shape::Cylinder(cylinder) => EmitterShape::Revolved(Revolved::cylinder(cylinder)),
-        Shape::Patch(_) => return Err("a curved bilinear patch"),
-        Shape::Mesh(mesh) => {
-            let Some(parallelogram) = as_parallelogram(mesh) else {
-                let prims = 0..mesh.indices.len() as u32;
-                return Ok(Pieces::Each(prims.map(|prim| triangle(mesh.triangle(prim), mesh.reversed)).collect()));
-            };
-            parallelogram
-        }
-    }))
-}
-
-fn triangle([a, b, c]: [Vec3; 3], reversed: bool) -> EmitterShape {
-    let (e1, e2) = (b - a, c - a);
-    let ng = unit_normal(e1, e2);
-    EmitterShape::Triangle { a, e1, e2, ng: if reversed { -ng } else { ng } }
-}
-
-/// In double precision: thin triangles have normals too.
-fn unit_normal(e1: Vec3, e2: Vec3) -> Vec3 {
-    e1.as_dvec3().cross(e2.as_dvec3()).normalize_or_zero().as_vec3()
-}
-
-/// Two triangles that make a parallelogram, as one emitter: it can be sampled by solid angle.
-fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
-    if mesh.indices.len() != 2 {
-        return None;
-    }
-    let [first, second] = [mesh.triangle(0), mesh.triangle(1)];
-    // Turn the first triangle until its corner 0 is the one that the second does not have.
-    let turn = (0..3).find(|i| !second.contains(&first[*i]))?;
-    let [a, b, c] = [first[turn], first[(turn + 1) % 3], first[(turn + 2) % 3]];
-    let far = second.into_iter().find(|p| *p != b && *p != c)?;
-    let (e1, e2) = (b - a, c - a);
-    let size = (b - a).length() + (c - a).length() + a.length();
-    let ng = unit_normal(e1, e2);
-    let same_side = unit_normal(second[1] - second[0], second[2] - second[0]).dot(ng) > 0.999;
-    let closes = (b + e2 - far).length() <= 4.0 * f32::EPSILON * size;
-    (closes && same_side && second.contains(&b) && second.contains(&c)).then(|| EmitterShape::Parallelogram {
-        a,
-        e1,
-        e2,
-        ng: if mesh.reversed { -ng } else { ng },
-    })
+/// The surface of several objects.
+fn surfaces(geometry: &Geometry, objects: std::ops::Range<u32>) -> Vec<EmitterShape> {
+    let pieces: Vec<Pieces> = objects.map(|object| pieces(geometry, ObjectId(object))).collect();
+    pieces.iter().flat_map(Pieces::shapes).copied().collect()
 }
 
 fn mesh_of(mesh: TriangleMesh) -> Mesh {
-    let TriangleMesh { positions, indices, normals, uvs } = mesh;
+    let TriangleMesh { positions, indices, normals, uvs, .. } = mesh;
     let (normals, uvs) = (normals.unwrap_or_default(), uvs.unwrap_or_default());
     Mesh { positions, indices, normals, uvs, reversed: false }
 }
@@ -444,7 +342,7 @@ fn patches_of(patches: &PatchDesc) -> impl Iterator<Item = Patch> {
 }
 
 /// The square [−1, 1]² at z = 0, seen from +z.
-fn rectangle() -> Mesh {
+pub(super) fn rectangle() -> Mesh {
     let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
     Mesh {
         positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
@@ -487,14 +385,5 @@ mod tests {
             let [a, b, c] = cube.triangle(prim);
             assert!((b - a).cross(c - a).dot(a + b + c) > 0.0, "triangle {prim}");
         }
-    }
-
-    #[test]
-    fn a_rectangle_is_one_emitter_that_shines_along_z() {
-        let Some(EmitterShape::Parallelogram { e1, e2, ng, .. }) = as_parallelogram(&rectangle()) else { panic!() };
-        assert_eq!((e1.cross(e2).length(), ng), (4.0, Vec3::Z));
-        let mut bent = rectangle();
-        bent.positions[3] = Vec3::new(-1.5, 1.0, 0.0);
-        assert!(as_parallelogram(&bent).is_none());
     }
 }

@@ -1,9 +1,11 @@
-//! What becomes of priorities.
+//! What becomes of priorities, and of the power of lights.
 
 use std::path::Path;
 
+use tyndall::light::{Light, Reference};
+use tyndall::math::{Vec2, Vec3};
 use tyndall::scene::Scene;
-use tyndall::spectrum::ColorMode;
+use tyndall::spectrum::{ColorMode, Wavelengths, srgb};
 
 use crate::error::Diagnostics;
 
@@ -72,4 +74,136 @@ fn what_cannot_have_a_priority_is_told() {
     );
     assert!(outside.contains("the other bodies say"), "{outside}");
     assert!(told(r#"Shape "sphere" "float priority" 1"#).contains("integer"));
+}
+
+/// An image of `n × n` pixels as PNG, brightness by place, in a directory of the test's own.
+fn picture(name: &str, n: u32) -> std::path::PathBuf {
+    let path = std::env::temp_dir().join(format!("tyndall_{}_{name}.png", std::process::id()));
+    let pixels = image::RgbImage::from_fn(n, n, |x, y| image::Rgb([(40 * x) as u8, (60 * y) as u8, 90]));
+    pixels.save(&path).unwrap();
+    path
+}
+
+/// Luminance of the power of a light, by light samples at points around it, on a sphere of radius 100: each sees the
+/// irradiance that passes the sphere there, `Φ = ∮ E dA`.
+fn power_by_light_samples(lights: &[Light]) -> f64 {
+    let (n, radius) = (200, 100.0f32);
+    let mut sum = 0.0;
+    for i in 0..n {
+        for j in 0..n {
+            let u = Vec2::new((i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32);
+            let out = tyndall::sampling::warp::uniform_sphere(u);
+            let from = Reference { p: out * radius, normal: None };
+            // Of a light with an extent, points by other numbers than the place.
+            let v = Vec2::new((0.5 + 0.618_034 * (n * i + j) as f32).fract(), (0.754_878 * (n * i + j) as f32).fract());
+            for light in lights {
+                let Some(s) = light.sample(&from, v, &Wavelengths::Rgb) else { continue };
+                let li = srgb::luminance([0, 1, 2].map(|lane| s.li.lane(lane)));
+                sum += f64::from(li / s.pdf * -s.dir.dot(out));
+            }
+        }
+    }
+    sum * 4.0 * std::f64::consts::PI * f64::from(radius * radius) / f64::from(n * n)
+}
+
+/// pbrt's `power`: what comes out, summed up over a sphere around the light, is what was asked for; of a mesh each face has
+/// it, of a patch that is flat the whole; `scale` and the size of an RGB colour are factors on it, that of a spectrum is none.
+#[test]
+fn lights_have_the_power_that_they_are_given() {
+    let (square, wide) = (picture("square", 5), picture("wide", 4));
+    let (square, wide) = (square.display().to_string(), wide.display().to_string());
+    let mesh =
+        r#"Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 3 4] "point3 P" [0 0 0 1 0 0 1 1 0 0 1 0 -1 -1 1]"#;
+    let patch = r#"Shape "bilinearmesh" "point3 P" [0 0 0 1 0 0 0 1 0 1.5 1.5 0]"#;
+    let bent = r#"Shape "bilinearmesh" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 0.8]"#;
+    let cases: Vec<(String, f64, f64)> = vec![
+        (r#"LightSource "point" "float power" 60"#.into(), 60.0, 1e-4),
+        (r#"LightSource "point" "float power" 60 "float scale" 2 "rgb I" [3 3 3]"#.into(), 360.0, 1e-4),
+        (r#"LightSource "point" "float power" 60 "blackbody I" 3000"#.into(), 60.0, 1e-3),
+        (r#"LightSource "point" "float power" -1"#.into(), 4.0 * std::f64::consts::PI, 1e-4),
+        (r#"LightSource "spot" "float power" 60 "float coneangle" 50 "float conedeltaangle" 30"#.into(), 60.0, 2e-3),
+        (format!(r#"LightSource "goniometric" "float power" 60 "string filename" "{square}""#), 60.0, 1e-2),
+        (format!(r#"LightSource "projection" "float power" 60 "float fov" 70 "string filename" "{wide}""#), 60.0, 2e-2),
+        (r#"AreaLightSource "diffuse" "float power" 60 Shape "sphere" "float radius" 2"#.into(), 60.0, 3e-3),
+        (r#"AreaLightSource "diffuse" "float power" 60 "bool twosided" true Shape "disk""#.into(), 60.0, 3e-3),
+        (format!(r#"AreaLightSource "diffuse" "float power" 60 {mesh}"#), 180.0, 5e-3),
+        (format!(r#"AreaLightSource "diffuse" "float power" 60 {patch}"#), 60.0, 5e-3),
+        (format!(r#"AreaLightSource "diffuse" "float power" 60 {bent}"#), 60.0, 5e-3),
+        (format!(r#"AreaLightSource "diffuse" "float power" 60 "string filename" "{square}" {bent}"#), 0.0, 0.0),
+    ];
+    for (world, expected, tolerance) in cases {
+        let scene = pbrt(&world).unwrap_or_else(|e| panic!("{world}: {e}"));
+        let power = power_by_light_samples(&scene.lights.lights);
+        // A picture on a surface counts as if it lay on it without distortion: on a bent one that is only nearly so.
+        let holds =
+            (power / expected - 1.0).abs() <= tolerance || (expected == 0.0 && (power / 60.0 - 1.0).abs() < 0.1);
+        assert!(holds, "{world}: {power} W, expected {expected}");
+    }
+    for file in [square, wide] {
+        std::fs::remove_file(file).unwrap();
+    }
+}
+
+/// `illuminance`: on a plate that faces a distant light E; under an even sky, whatever L is, E = π L; of an image pbrt takes
+/// half of what its upper half (+z) gives.
+#[test]
+fn skies_and_suns_have_the_illuminance_that_they_are_given() {
+    let sky = picture("sky", 64).display().to_string();
+    let sun = pbrt(r#"LightSource "distant" "float illuminance" 7 "rgb L" [2 2 2]"#).unwrap();
+    let Light::Distant(sun) = &sun.lights.lights[0] else { panic!() };
+    assert!((sun.irradiance.luminance() - 14.0).abs() < 1e-4);
+    let upward = |world: &str| {
+        let scene = pbrt(world).unwrap();
+        let (n, from) = (300, Reference { p: Vec3::new(0.1, 0.1, 0.0), normal: None });
+        let mut sum = 0.0;
+        for i in 0..n {
+            for j in 0..n {
+                let u = Vec2::new((i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32);
+                let dir = tyndall::sampling::warp::cosine_hemisphere(u);
+                let le = scene.lights.lights[0].le_from_infinity(from.p, dir, &Wavelengths::Rgb);
+                sum += f64::from(srgb::luminance([0, 1, 2].map(|lane| le.lane(lane))));
+            }
+        }
+        std::f64::consts::PI * sum / f64::from(n * n)
+    };
+    assert!((upward(r#"LightSource "infinite" "float illuminance" 7"#) - 7.0).abs() < 1e-4);
+    assert!((upward(r#"LightSource "infinite" "rgb L" [2 2 2] "float illuminance" 7"#) - 14.0).abs() < 1e-4);
+    let image = upward(&format!(r#"LightSource "infinite" "string filename" "{sky}" "float illuminance" 7"#));
+    assert!((image / 14.0 - 1.0).abs() < 0.01, "{image}");
+    let wide = r#""point3 portal" [-1e4 -1e4 1  -1e4 1e4 1  1e4 1e4 1  1e4 -1e4 1]"#;
+    let open = upward(&format!(r#"LightSource "infinite" "rgb L" [2 2 2] {wide}"#));
+    let turned = wide.replace(
+        "[-1e4 -1e4 1  -1e4 1e4 1  1e4 1e4 1  1e4 -1e4 1]",
+        "[-1e4 -1e4 1  1e4 -1e4 1  1e4 1e4 1  -1e4 1e4 1]",
+    );
+    let other = upward(&format!(r#"LightSource "infinite" "rgb L" [2 2 2] {turned}"#));
+    assert!(
+        (open.max(other) / (2.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3 && open.min(other) == 0.0,
+        "{open} {other}"
+    );
+    std::fs::remove_file(sky).unwrap();
+}
+
+/// A light straight ahead has no radiance to be seen, and is a light of its own for each face.
+#[test]
+fn a_surface_that_shines_straight_ahead_is_a_beam_and_a_curved_one_is_refused() {
+    let shape = |kind: &str| {
+        let light = r#"<emitter type="directionalarea"><rgb name="radiance" value="2"/></emitter>"#;
+        mitsuba(&format!(r#"<shape type="{kind}">{light}</shape>"#))
+    };
+    let scene = shape("rectangle").unwrap();
+    assert!(matches!(scene.lights.lights[..], [Light::Beam(_)]));
+    assert_eq!(scene.objects[0].emission, tyndall::scene::Emission::None);
+    assert_eq!(shape("cube").unwrap().lights.lights.len(), 12);
+    assert!(shape("sphere").unwrap_err().to_string().contains("only flat faces"));
+}
+
+/// Emitters in a group: an error in Mitsuba, as there; in pbrt the shapes are there and dark.
+#[test]
+fn shapes_that_are_placed_by_copies_do_not_shine() {
+    let scene = pbrt(
+        r#"ObjectBegin "o" AreaLightSource "diffuse" Shape "sphere" ObjectEnd ObjectInstance "o" Translate 5 0 0 ObjectInstance "o""#,
+    );
+    let scene = scene.unwrap();
+    assert!(scene.lights.lights.is_empty() && scene.geometry.census().instances == 2);
 }

@@ -7,7 +7,7 @@ use glam::{Affine2, DMat4, DVec2, DVec3, Vec2, Vec3};
 use tyndall::{
     math::Transform,
     texture::{
-        Grey, ImageTexture, Interpolation, Mapping2, Mapping3, Noise, Picture, Texture, Weight, Wrap,
+        Attribute, Grey, ImageTexture, Interpolation, Mapping2, Mapping3, Noise, Picture, Texture, Weight, Wrap,
         noise::Kind,
         pattern::{Checkerboard, Marble},
     },
@@ -90,6 +90,16 @@ impl Builder<'_> {
                 by: Arc::new(Weight::Dots(self.mapping(mapping, span)?)),
             },
             TextureKind::Image(desc) => Texture::Image(self.image_texture(desc, measure)?),
+            TextureKind::Attribute { of_faces, scale } => {
+                let painted = Arc::clone(&self.painted[usize::from(*of_faces)]);
+                if painted.meshes.is_empty() {
+                    let (wanted, program) = if *of_faces { ("faces", "face") } else { ("vertices", "vertex") };
+                    let error = SceneError::at(span, format!("no mesh has colours of its {wanted}"));
+                    return self
+                        .fail(error.help(format!("a PLY file has them as properties r, g, b of each {program}")));
+                }
+                Texture::Attribute(Attribute { painted, scale: *scale as f32, most: most(measure) })
+            }
             TextureKind::Fbm(noise) => {
                 let (octaves, omega) = (noise.octaves, noise.roughness as f32);
                 self.noise(Kind::Fbm { octaves, omega }, noise.from_world, span)?
@@ -164,8 +174,22 @@ impl Builder<'_> {
             invert: desc.invert,
             grey: if desc.by_luminance { Grey::Luminance } else { Grey::Mean },
             least: if measure == Measure::Number { f32::MIN } else { 0.0 },
-            most: if measure == Measure::Share { 1.0 } else { f32::MAX },
+            most: most(measure),
         })
+    }
+
+    /// Columns and rows of a picture; 1 × 1 for what is none.
+    pub(super) fn picture_size(&mut self, texture: Option<&Spanned<Varying>>) -> [u32; 2] {
+        let scene = self.desc;
+        let kind = match texture.map(|texture| &texture.value) {
+            Some(Varying::Texture(id)) => scene.texture(*id).map(|desc| &desc.kind),
+            _ => None,
+        };
+        let picture = match kind {
+            Some(TextureKind::Image(image)) => self.picture(image),
+            _ => None,
+        };
+        picture.map_or([1, 1], |picture| [picture.width, picture.height])
     }
 
     fn picture(&mut self, desc: &ImageDesc) -> Option<Arc<Picture>> {
@@ -183,4 +207,9 @@ impl Builder<'_> {
             Err(e) => self.fail(SceneError::at(desc.path.span, e.to_string())),
         }
     }
+}
+
+/// The greatest value of what is measured so.
+fn most(measure: Measure) -> f32 {
+    if measure == Measure::Share { 1.0 } else { f32::MAX }
 }

@@ -1,9 +1,12 @@
 //! The camera and its film.
 
 use glam::DMat4;
-use tyndall::film::LayerKind;
+use tyndall::{
+    film::{LayerKind, Recorded},
+    spectrum::ColorMode,
+};
 
-use super::{FileRef, MediumId, Span, Spanned};
+use super::{FileRef, MediumId, ShapeDesc, Span, Spanned};
 
 /// A camera.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,8 +52,24 @@ pub enum CameraKind {
     },
     /// The light of one ray along +z.
     RadianceMeter,
+    /// The light of parallel rays along +z from outside of the scene, to a target.
+    Distant {
+        /// Where they go.
+        target: DistantTarget,
+    },
     /// Several cameras side by side, left to right, each as wide as the others.
     Batch(Vec<CameraDesc>),
+}
+
+/// Where parallel rays go.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DistantTarget {
+    /// To the disk that the sphere around the box of the scene shows them.
+    Scene,
+    /// To a point in the world.
+    Point([f64; 3]),
+    /// To all points of a shape alike; it need not be part of the scene.
+    Shape(Box<ShapeDesc>),
 }
 
 /// A thin lens.
@@ -127,6 +146,8 @@ pub struct FrameDesc {
     pub aspect: Option<Spanned<f64>>,
     /// pbrt's screen window `[x_min, x_max, y_min, y_max]`; it replaces the aspect.
     pub screen_window: Option<Spanned<[f64; 4]>>,
+    /// How far the picture lies to the right of that and below, in its own width and height (Mitsuba's principal point).
+    pub offset: [f64; 2],
 }
 
 /// The part of a plane that the whole film sees (a crop is a part of it).
@@ -179,10 +200,18 @@ impl CameraDesc {
 impl FrameDesc {
     /// The whole film, by one of its sides.
     pub fn of_film(axis: FovAxis) -> Self {
-        Self { axis, aspect: None, screen_window: None }
+        Self { axis, aspect: None, screen_window: None, offset: [0.0; 2] }
     }
 
-    fn window(&self, half: f64, width: u32, height: u32) -> ImageWindow {
+    /// What a picture of `width` × `height` sees of a plane in which half of its reference side is `half`.
+    pub(crate) fn window(&self, half: f64, width: u32, height: u32) -> ImageWindow {
+        let ImageWindow { left, right, bottom, top } = self.centred(half, width, height);
+        let [right_by, down_by] = self.offset;
+        let (x, y) = ((right - left) * right_by, (bottom - top) * down_by);
+        ImageWindow { left: left + x, right: right + x, bottom: bottom + y, top: top + y }
+    }
+
+    fn centred(&self, half: f64, width: u32, height: u32) -> ImageWindow {
         if let Some(Spanned { value: [left, right, bottom, top], .. }) = self.screen_window {
             return ImageWindow { left: left * half, right: right * half, bottom: bottom * half, top: top * half };
         }
@@ -222,6 +251,14 @@ pub struct FilmDesc {
     pub layers: Vec<LayerKind>,
     /// Factor on every value (pbrt: `iso` / 100 × time that the shutter is open), 1 by default.
     pub exposure: f64,
+}
+
+impl FilmDesc {
+    /// How colour must be carried for what the film records: by wavelengths, if it records bands of them.
+    pub fn color(&self) -> ColorMode {
+        let is_light = |layer: &LayerKind| matches!(layer.recorded, Recorded::Light(_));
+        if self.layers.iter().any(is_light) { ColorMode::Spectral } else { ColorMode::Rgb }
+    }
 }
 
 /// A rectangle of pixels, from the upper left: `x0 ≤ x < x1`, `y0 ≤ y < y1`, not empty and within the film.

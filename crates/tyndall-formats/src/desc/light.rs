@@ -2,7 +2,7 @@
 
 use glam::DMat4;
 
-use super::{FileRef, MediumId, Span, Spanned, SpectrumDesc};
+use super::{FileRef, FovAxis, MediumId, Span, Spanned, SpectrumDesc, Varying};
 
 /// A quantity of light: a spectrum times a factor.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,10 +30,26 @@ pub enum Magnitude {
 pub struct AreaLightDesc {
     /// The words that made it.
     pub span: Span,
-    /// Radiance \[W·m⁻²·sr⁻¹\].
+    /// Radiance \[W·m⁻²·sr⁻¹\]; of a light that is [`Spread::Straight`], exitance \[W·m⁻²\].
     pub radiance: EmissionDesc,
+    /// A factor on it that varies over the surface, if one does.
+    pub pattern: Option<Spanned<Varying>>,
+    /// What each face of a mesh, or all of another shape, emits where radiance and pattern have luminance 1, if the file
+    /// says so \[W\] (pbrt).
+    pub power: Option<f64>,
     /// Whether the other side emits as well.
     pub two_sided: bool,
+    /// Into which directions.
+    pub spread: Spread,
+}
+
+/// Into which directions a surface emits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spread {
+    /// All, with the same radiance.
+    Diffuse,
+    /// Its normal only.
+    Straight,
 }
 
 /// A light that is not a surface.
@@ -68,6 +84,32 @@ pub enum LightKind {
         beam: f64,
         /// In between.
         falloff: SpotFalloff,
+        /// A picture in front of it, which the cone of the cutoff touches at the middles of its sides, if there is one.
+        slide: Option<Spanned<Varying>>,
+    },
+    /// A point whose intensity in each direction is in a picture.
+    Goniometric {
+        /// Radiant intensity \[W/sr\] where the picture is 1.
+        intensity: EmissionDesc,
+        /// A square picture of all directions, equal-area octahedral, +z in the middle; the mean of its channels counts.
+        path: FileRef,
+        /// What it emits where the intensity has luminance 1, if the file says so \[W\].
+        power: Option<f64>,
+    },
+    /// A point that projects a picture, upright for one who looks along +z with +x to the right.
+    Projector {
+        /// What a clear slide gives: radiant intensity \[W/sr\] or irradiance \[W/m²\], as `even` says.
+        emission: EmissionDesc,
+        /// The slide; clear without one. Its `(u, v)` runs to +x and +y, from 0 to 1.
+        slide: Option<Spanned<Varying>>,
+        /// Field of view \[degrees\], in (0, 180).
+        fov: Spanned<f64>,
+        /// The side of the picture that it spans.
+        axis: FovAxis,
+        /// What it emits where the emission has luminance 1, if the file says so \[W\].
+        power: Option<f64>,
+        /// What is even behind a clear slide.
+        even: Evenness,
     },
     /// Parallel light.
     Distant {
@@ -85,9 +127,31 @@ pub enum LightKind {
         path: FileRef,
         /// Factor.
         scale: f64,
+        /// Illuminance \[lx\] of the image's own upper half (+z), as pbrt reckons it, if the file says so.
+        illuminance: Option<f64>,
         /// Which pixel shows which direction.
         mapping: EnvironmentMapping,
     },
+    /// The sky behind a rectangle, through which alone it is seen (pbrt).
+    Portal {
+        /// The corners in the world, in order round it: the sky is on the side of `(p₃ − p₀) × (p₁ − p₀)`.
+        corners: Spanned<[[f64; 3]; 4]>,
+        /// The radiance of the sky \[W·m⁻²·sr⁻¹\]; or a factor on that of its image.
+        radiance: EmissionDesc,
+        /// An image of it: equal-area octahedral, +z in the middle.
+        path: Option<FileRef>,
+        /// As in [`LightKind::Environment`].
+        illuminance: Option<f64>,
+    },
+}
+
+/// What is even where the slide of a projector is clear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evenness {
+    /// pbrt: intensity.
+    Intensity,
+    /// Mitsuba: irradiance on a wall square to the axis; what is given is that at distance 1, over π.
+    Irradiance,
 }
 
 /// How a spot fades between beam and cutoff.

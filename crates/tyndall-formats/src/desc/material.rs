@@ -2,7 +2,7 @@
 
 use tyndall::relief::Rule;
 
-use super::{FileRef, MaterialId, Span, Spanned, SpectrumDesc, Varying};
+use super::{FileRef, MaterialId, PrincipledDesc, PrincipledThinDesc, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,9 +72,15 @@ pub enum MaterialKind {
         reflectance: Spanned<Varying>,
         /// Whether light between base and coat deepens the colour.
         nonlinear: bool,
+        /// Roughness of the coat, the same everywhere and in all directions; `None` where it is smooth.
+        roughness: Option<RoughnessDesc>,
         /// Factor on what the coat reflects, if not 1.
         tint: Option<Spanned<Varying>>,
     },
+    /// Burley's model of solids (Mitsuba).
+    Principled(Box<PrincipledDesc>),
+    /// Burley's model of sheets (Mitsuba).
+    PrincipledThin(Box<PrincipledThinDesc>),
     /// A base under a coat of a dielectric (pbrt).
     Coated(Box<CoatedDesc>),
     /// A material as it was measured, in a file of RGL's.

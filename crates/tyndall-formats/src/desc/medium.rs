@@ -36,6 +36,22 @@ pub enum Coefficients {
         /// Scattering \[1/scene unit\].
         sigma_s: Spanned<SpectrumDesc>,
     },
+    /// Both coefficients, per millimetre.
+    PerMillimetre {
+        /// Absorption \[1/mm\].
+        sigma_a: Spanned<SpectrumDesc>,
+        /// Scattering \[1/mm\].
+        sigma_s: Spanned<SpectrumDesc>,
+    },
+    /// What a flat and deep body returns of the light that gets through its surface, and how far light flies in it.
+    Reflectance {
+        /// Share of the entering light that comes out again, under the same radiance from everywhere, in [0, 1].
+        reflectance: Spanned<SpectrumDesc>,
+        /// Mean free path 1/σ_t \[mm\].
+        mfp: Spanned<SpectrumDesc>,
+        /// Index of refraction of the body relative to the outside, at a smooth boundary.
+        eta: f64,
+    },
     /// Their sum, and the part of it that scatters.
     ExtinctionAlbedo {
         /// Extinction \[1/scene unit\].
@@ -46,7 +62,7 @@ pub enum Coefficients {
 }
 
 /// A phase function.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PhaseDesc {
     /// The same in all directions.
     Isotropic,
@@ -57,6 +73,18 @@ pub enum PhaseDesc {
     },
     /// Rayleigh's, of particles far smaller than the wavelength.
     Rayleigh,
+    /// By a table (Mitsuba).
+    Tabulated {
+        /// Relative values at regularly spaced cosines, from -1 (straight back) to 1 (straight on).
+        values: Spanned<Vec<f64>>,
+    },
+    /// Two others, weighed (Mitsuba).
+    Blend {
+        /// They.
+        of: Box<[Self; 2]>,
+        /// How much of the second, in [0, 1].
+        weight: Spanned<f64>,
+    },
 }
 
 /// What is on either side of a surface. `None` is empty space.

@@ -22,23 +22,28 @@ mod camera;
 mod light;
 mod material;
 mod medium;
+mod principled;
 mod settings;
 mod shape;
 mod spectrum;
 mod texture;
+mod uses;
 
 use std::path::PathBuf;
 
 pub use camera::{
-    ApertureDesc, CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FovAxis, FrameDesc, ImageWindow,
-    RealisticDesc, SphereMapping, ThinLensDesc,
+    ApertureDesc, CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc,
+    ImageWindow, RealisticDesc, SphereMapping, ThinLensDesc,
 };
-pub use light::{AreaLightDesc, EmissionDesc, EnvironmentMapping, LightDesc, LightKind, Magnitude, SpotFalloff};
+pub use light::{
+    AreaLightDesc, EmissionDesc, EnvironmentMapping, Evenness, LightDesc, LightKind, Magnitude, SpotFalloff, Spread,
+};
 pub use material::{
     BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc,
     ShadowingKind,
 };
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
+pub use principled::{BurleyDesc, PrincipledDesc, PrincipledThinDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
 pub use shape::{DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
 pub use spectrum::SpectrumDesc;
@@ -124,7 +129,8 @@ impl SceneDesc {
             _ => None,
         });
         let skies = self.lights.iter().filter_map(|light| match &light.kind {
-            LightKind::Environment { path, .. } => Some(path),
+            LightKind::Environment { path, .. } | LightKind::Goniometric { path, .. } => Some(path),
+            LightKind::Portal { path, .. } => path.as_ref(),
             _ => None,
         });
         meshes.chain(pictures).chain(skies).chain(self.camera.files()).map(|file| &file.value)

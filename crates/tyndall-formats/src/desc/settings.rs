@@ -1,6 +1,6 @@
 //! Settings: units, samples, integrator, and what had no effect.
 
-use tyndall::film::LayerKind;
+use tyndall::{film::LayerKind, integrator::Counted};
 
 use super::{Span, Spanned};
 
@@ -86,6 +86,8 @@ pub struct IntegratorDesc {
     /// The most scatterings of a path (0: only light seen directly), if the user limits them. Mitsuba's `max_depth` counts
     /// one more. Where the user wrote nothing there is no limit, also where the language's own renderer has one.
     pub max_depth: Option<Spanned<u32>>,
+    /// What counts as a scattering for that.
+    pub counted: Counted,
     /// Scatterings before Russian roulette may begin, if the user says.
     pub rr_depth: Option<Spanned<u32>>,
     /// Whether emission that the camera sees directly is left out.

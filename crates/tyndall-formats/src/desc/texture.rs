@@ -93,6 +93,13 @@ pub enum TextureKind {
     },
     /// A picture.
     Image(ImageDesc),
+    /// Colours that meshes have themselves (Mitsuba).
+    Attribute {
+        /// Whether each face has one, or each vertex.
+        of_faces: bool,
+        /// Factor on them.
+        scale: f64,
+    },
     /// Fractional Brownian motion.
     Fbm(NoiseDesc),
     /// Turbulence.

@@ -44,7 +44,7 @@ pub fn write(path: &Path, image: &Image) -> Result<(), FilmError> {
         LayerAttributes {
             layer_position: Vec2(crop.min.0.cast_signed(), crop.min.1.cast_signed()),
             software_name: image.metadata.as_ref().map(|m| utf8(&format!("tyndall {}", m.version))),
-            other: image.metadata.as_ref().map(text_attributes).unwrap_or_default(),
+            other: text_attributes(image),
             ..LayerAttributes::default()
         },
         Encoding { compression: Compression::ZIP16, ..Encoding::SMALL_LOSSLESS },
@@ -165,8 +165,14 @@ fn rgb_channels(prefix: &str, pixels: &[[f32; 3]]) -> Vec<AnyChannel<FlatSamples
     ["R", "G", "B"].into_iter().enumerate().map(channel).collect()
 }
 
-fn text_attributes(metadata: &Metadata) -> HashMap<Text, AttributeValue> {
-    let entries = metadata.entries().into_iter().filter(|(_, value)| !value.is_empty());
+/// How the image was made, and what spectral layers (`S0.550,000nm`) ask for: Fichet et al. 2021, "An OpenEXR layout for
+/// spectral images".
+fn text_attributes(image: &Image) -> HashMap<Text, AttributeValue> {
+    let made = image.metadata.iter().flat_map(Metadata::entries);
+    let is_spectral = image.layers.iter().any(|channel| channel.name.starts_with("S0."));
+    let layout = [("spectralLayoutVersion", "1.0"), ("emissiveUnits", "W.m^-2.sr^-1")];
+    let layout = layout.into_iter().filter(|_| is_spectral).map(|(name, value)| (name, value.to_owned()));
+    let entries = made.chain(layout).filter(|(_, value)| !value.is_empty());
     entries.map(|(name, value)| (utf8(name), AttributeValue::Text(utf8(&value)))).collect()
 }
 
@@ -196,7 +202,10 @@ fn rec_709() -> Chromaticities {
 mod tests {
     use tyndall::film::Film;
 
-    use super::{super::save::tests::scratch, *};
+    use super::{
+        super::{Channel, save::tests::scratch},
+        *,
+    };
 
     fn sample_image() -> Image {
         let mut film = Film::new(23, 17, Crop { min: (3, 2), max: (20, 15) });
@@ -238,6 +247,22 @@ mod tests {
         let back = decode(&bytes_of(&image, "exr-round")).unwrap();
         assert_eq!(back.metadata, image.metadata);
         assert!(back == image);
+    }
+
+    /// As readers of the layout for spectral images look for it.
+    #[test]
+    fn spectral_layers_come_with_the_attributes_of_their_layout() {
+        let channel = Channel { name: "S0.550,000nm".into(), values: vec![1.5; 17 * 13] };
+        let bytes = bytes_of(&Image { layers: vec![channel], ..sample_image() }, "exr-spectral");
+        let file = ::exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().all_layers();
+        let file: FlatImage = file.all_attributes().from_buffered(Cursor::new(&bytes)).unwrap();
+        let layer = &file.layer_data[0];
+        let text = |name| text_attribute(&layer.attributes.other, name);
+        assert_eq!(text("spectralLayoutVersion").as_deref(), Some("1.0"));
+        assert_eq!(text("emissiveUnits").as_deref(), Some("W.m^-2.sr^-1"));
+        assert!(layer.channel_data.list.iter().any(|channel| channel.name.to_string() == "S0.550,000nm"));
+        let plain = decode(&bytes_of(&sample_image(), "exr-plain")).unwrap();
+        assert_eq!(plain.metadata, sample_image().metadata);
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub fn displace(
         *p += n * height(*p, *uv);
     }
     let normals = Some(mean_normals(&positions, &indices));
-    TriangleMesh { positions, indices, normals, uvs: Some(uvs) }.checked()
+    TriangleMesh { positions, indices, normals, uvs: Some(uvs), ..TriangleMesh::default() }.checked()
 }
 
 /// Vertices in the making.
@@ -114,7 +114,9 @@ fn mean_normals(positions: &[Vec3], indices: &[[u32; 3]]) -> Vec<Vec3> {
     for triangle in indices {
         let [a, b, c] = triangle.map(|v| positions[v as usize].as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
-        triangle.iter().for_each(|&v| normals[v as usize] += normal);
+        for &v in triangle {
+            normals[v as usize] += normal;
+        }
     }
     normals.into_iter().map(Vec3::normalize_or_zero).collect()
 }
@@ -130,6 +132,7 @@ mod tests {
             indices: vec![[0, 1, 2], [0, 2, 3]],
             normals: None,
             uvs: Some(vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]),
+            ..TriangleMesh::default()
         }
     }
 

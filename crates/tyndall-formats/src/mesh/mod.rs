@@ -37,6 +37,10 @@ pub struct TriangleMesh {
     pub normals: Option<Vec<Vec3>>,
     /// Texture coordinates of each vertex, as the file has them.
     pub uvs: Option<Vec<Vec2>>,
+    /// Colour of each vertex.
+    pub colours: Option<Vec<[f32; 3]>>,
+    /// Colour of each triangle.
+    pub face_colours: Option<Vec<[f32; 3]>>,
 }
 
 /// Why a mesh file could not be read.
@@ -74,11 +78,15 @@ impl TriangleMesh {
         if let Some(i) = uvs.iter().position(|uv| !uv.is_finite()) {
             return Err(format!("the texture coordinates of vertex {i} are {}", uvs[i]));
         }
-        for (count, what) in
-            [(&self.normals.as_ref().map(Vec::len), "normals"), (&self.uvs.as_ref().map(Vec::len), "uvs")]
-        {
-            if count.is_some_and(|count| count != vertices) {
-                return Err(format!("has {vertices} vertices but {} {what}", count.unwrap_or_default()));
+        let (triangles, len) = (self.indices.len(), |list: &Option<Vec<[f32; 3]>>| list.as_ref().map(Vec::len));
+        for (found, count, what) in [
+            (self.normals.as_ref().map(Vec::len), vertices, "vertices but {} normals"),
+            (self.uvs.as_ref().map(Vec::len), vertices, "vertices but {} uvs"),
+            (len(&self.colours), vertices, "vertices but {} colours"),
+            (len(&self.face_colours), triangles, "triangles but {} colours"),
+        ] {
+            if let Some(found) = found.filter(|found| *found != count) {
+                return Err(format!("has {count} {}", what.replace("{}", &found.to_string())));
             }
         }
         Ok(self)

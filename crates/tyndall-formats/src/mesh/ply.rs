@@ -1,8 +1,9 @@
 //! PLY (Turk, "The PLY polygon file format", 1994): ascii, binary little-endian and binary big-endian.
 //!
 //! Read are the vertex properties `x y z`, `nx ny nz`, and texture coordinates under any of the names that programs
-//! write (`u v`, `s t`, `texture_u texture_v`, `texture_s texture_t`), in any order and of any number type; and the
-//! face lists `vertex_indices` or `vertex_index`, whose polygons become fans of triangles. All else is stepped over.
+//! write (`u v`, `s t`, `texture_u texture_v`, `texture_s texture_t`), in any order and of any number type; the face lists
+//! `vertex_indices` or `vertex_index`, whose polygons become fans of triangles; and colours of vertices and of faces, `r g b`
+//! or `red green blue`, as the numbers that they are. All else is stepped over.
 
 use std::fmt::{self, Formatter};
 use std::io::{self, Write};
@@ -45,13 +46,14 @@ pub fn parse_ply(mut bytes: Vec<u8>) -> Result<TriangleMesh, String> {
 
     let mut mesh = TriangleMesh::default();
     let (mut normals, mut uvs) = (Vec::new(), Vec::new());
+    let (mut colours, mut face_colours) = (Vec::new(), Vec::new());
     let mut file = &mut reader;
     while let Some(ElementDef { name, properties, .. }) = file.current_element().cloned() {
         let columns: Vec<_> = properties.iter().map(|property| Column::of(&name, &property.name)).collect();
         let has = |numbers: Range<usize>| numbers.into_iter().all(|i| columns.contains(&Column::Number(i)));
-        let (has_normals, has_uvs) = (has(3..6), has(6..8));
+        let (has_normals, has_uvs, has_colours) = (has(3..6), has(6..8), has(8..11));
         let mut each = |row: &Row| {
-            let [x, y, z, nx, ny, nz, u, v] = row.numbers;
+            let [x, y, z, nx, ny, nz, u, v, r, g, b] = row.numbers;
             if name == "vertex" {
                 mesh.positions.push(Vec3::new(x, y, z));
             }
@@ -61,13 +63,21 @@ pub fn parse_ply(mut bytes: Vec<u8>) -> Result<TriangleMesh, String> {
             if has_uvs {
                 uvs.push(Vec2::new(u, v));
             }
+            if has_colours && name == "vertex" {
+                colours.push([r, g, b]);
+            }
             fan(&row.corners, &mut mesh.indices);
+            if has_colours && name == "face" {
+                face_colours.resize(mesh.indices.len(), [r, g, b]);
+            }
         };
         file.next_value_seed(Rows { columns: &columns, each: &mut each })
             .map_err(|error| format!("element `{name}`: {}", explain(&error)))?;
     }
     mesh.normals = (!normals.is_empty()).then_some(normals);
     mesh.uvs = (!uvs.is_empty()).then_some(uvs);
+    mesh.colours = (!colours.is_empty()).then_some(colours);
+    mesh.face_colours = (!face_colours.is_empty()).then_some(face_colours);
     mesh.checked()
 }
 
@@ -151,7 +161,7 @@ fn explain(error: &DeserializeError) -> String {
 /// What a property of the file is to the mesh.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Column {
-    /// 0–2 position, 3–5 normal, 6–7 texture coordinates.
+    /// 0–2 position, 3–5 normal, 6–7 texture coordinates, 8–10 colour of a vertex or a face.
     Number(usize),
     /// The list of the corners of a face.
     Corners,
@@ -169,6 +179,9 @@ impl Column {
             ("vertex", "nz") => Self::Number(5),
             ("vertex", "u" | "s" | "texture_u" | "texture_s") => Self::Number(6),
             ("vertex", "v" | "t" | "texture_v" | "texture_t") => Self::Number(7),
+            ("vertex" | "face", "r" | "red") => Self::Number(8),
+            ("vertex" | "face", "g" | "green") => Self::Number(9),
+            ("vertex" | "face", "b" | "blue") => Self::Number(10),
             ("face", "vertex_indices" | "vertex_index") => Self::Corners,
             _ => Self::Other,
         }
@@ -178,7 +191,7 @@ impl Column {
 /// One row of any element; what its element lacks stays empty.
 #[derive(Default)]
 struct Row {
-    numbers: [f32; 8],
+    numbers: [f32; 11],
     corners: Vec<u32>,
 }
 

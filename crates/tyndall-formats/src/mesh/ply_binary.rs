@@ -29,15 +29,14 @@ pub(super) fn read_elements(header: &PlyHeader, rest: &[u8]) -> Result<TriangleM
 
 fn read_vertices(element: &ElementDef, bytes: &mut Bytes, mesh: &mut TriangleMesh) -> Result<(), String> {
     let columns = columns(element);
-    let has = |numbers: std::ops::Range<usize>| {
-        numbers.into_iter().all(|i| columns.iter().any(|(_, column)| *column == Column::Number(i)))
-    };
-    let (has_normals, has_uvs) = (has(3..6), has(6..8));
+    let has = |numbers| has(&columns, numbers);
+    let (has_normals, has_uvs, has_colours) = (has(3..6), has(6..8), has(8..11));
     mesh.positions.reserve_exact(element.count);
     let normals = has_normals.then(|| mesh.normals.get_or_insert_default());
     let uvs = has_uvs.then(|| mesh.uvs.get_or_insert_default());
-    let (mut normals, mut uvs) = (normals, uvs);
-    let mut row = [0.0; 8];
+    let colours = has_colours.then(|| mesh.colours.get_or_insert_default());
+    let (mut normals, mut uvs, mut colours) = (normals, uvs, colours);
+    let mut row = [0.0; 11];
     for _ in 0..element.count {
         for (property, column) in &columns {
             match (property, column) {
@@ -45,13 +44,16 @@ fn read_vertices(element: &ElementDef, bytes: &mut Bytes, mesh: &mut TriangleMes
                 _ => bytes.skip(property)?,
             }
         }
-        let [x, y, z, nx, ny, nz, u, v] = row;
+        let [x, y, z, nx, ny, nz, u, v, r, g, b] = row;
         mesh.positions.push(Vec3::new(x, y, z));
         if let Some(normals) = &mut normals {
             normals.push(Vec3::new(nx, ny, nz));
         }
         if let Some(uvs) = &mut uvs {
             uvs.push(Vec2::new(u, v));
+        }
+        if let Some(colours) = &mut colours {
+            colours.push([r, g, b]);
         }
     }
     Ok(())
@@ -62,13 +64,16 @@ fn read_faces(element: &ElementDef, bytes: &mut Bytes, mesh: &mut TriangleMesh) 
     if columns.iter().any(|(_, column)| *column == Column::Corners) {
         mesh.indices.reserve(element.count);
     }
-    let mut corners = Vec::new();
+    let has_colours = has(&columns, 8..11);
+    let (mut corners, mut row) = (Vec::new(), [0.0; 11]);
     for _ in 0..element.count {
         for (property, column) in &columns {
             match (property, column) {
                 (PropertyType::List { count_type, data_type }, Column::Corners) => {
                     let count = bytes.index(*count_type)?;
-                    if let (3, Some(triangle)) = (count, bytes.triangle(*data_type)) {
+                    if count == 3
+                        && let Some(triangle) = bytes.triangle(*data_type)
+                    {
                         mesh.indices.push(triangle);
                         continue;
                     }
@@ -78,11 +83,20 @@ fn read_faces(element: &ElementDef, bytes: &mut Bytes, mesh: &mut TriangleMesh) 
                     }
                     fan(&corners, &mut mesh.indices);
                 }
+                (PropertyType::Scalar(scalar), Column::Number(i)) => row[*i] = bytes.number(*scalar)?,
                 _ => bytes.skip(property)?,
             }
         }
+        if has_colours {
+            let [.., r, g, b] = row;
+            mesh.face_colours.get_or_insert_default().resize(mesh.indices.len(), [r, g, b]);
+        }
     }
     Ok(())
+}
+
+fn has(columns: &[(PropertyType, Column)], numbers: std::ops::Range<usize>) -> bool {
+    numbers.into_iter().all(|i| columns.iter().any(|(_, column)| *column == Column::Number(i)))
 }
 
 fn columns(element: &ElementDef) -> Vec<(PropertyType, Column)> {

@@ -108,6 +108,7 @@ impl Body<'_> {
             indices,
             normals: normals.map(|n| n.into_iter().map(Vec3::from_array).collect()),
             uvs: uvs.map(|uv| uv.into_iter().map(Vec2::from_array).collect()),
+            ..TriangleMesh::default()
         }
         .checked()?;
         Ok(if flags & IS_FACETED == 0 { mesh } else { faceted(&mesh) })
@@ -154,6 +155,7 @@ fn faceted(mesh: &TriangleMesh) -> TriangleMesh {
         indices: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         normals: None,
         uvs: mesh.uvs.as_ref().map(|uvs| corners().map(|corner| uvs[corner]).collect()),
+        ..TriangleMesh::default()
     }
 }
 
@@ -213,7 +215,7 @@ mod tests {
     fn a_mesh_flagged_as_faceted_has_corners_for_each_face_and_no_normals() {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let indices = vec![[0, 1, 2], [0, 3, 1]];
-        let mesh = TriangleMesh { positions, indices, normals: Some(vec![Vec3::Z; 4]), uvs: None };
+        let mesh = TriangleMesh { positions, indices, normals: Some(vec![Vec3::Z; 4]), ..Default::default() };
         let faceted = faceted(&mesh);
         assert_eq!(faceted.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ZERO, Vec3::Z, Vec3::X]);
         assert_eq!((faceted.indices, faceted.normals), (vec![[0, 1, 2], [3, 4, 5]], None));

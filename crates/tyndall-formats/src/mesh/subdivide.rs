@@ -49,7 +49,7 @@ pub fn subdivide(positions: &[Vec3], faces: &[[u32; 3]], levels: u32) -> Result<
         normals: Some(level.normals()),
         positions: level.positions.iter().map(|p| p.as_vec3()).collect(),
         indices: level.faces,
-        uvs: None,
+        ..TriangleMesh::default()
     })
 }
 

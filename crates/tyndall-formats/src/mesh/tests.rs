@@ -55,6 +55,7 @@ fn square() -> TriangleMesh {
         indices: vec![[0, 1, 2], [0, 2, 3]],
         normals: Some(vec![Vec3::Z; 4]),
         uvs: Some(corners.to_vec()),
+        ..TriangleMesh::default()
     }
 }
 
@@ -180,5 +181,32 @@ proptest! {
         if let Ok(mesh) = read {
             prop_assert!(mesh.indices.iter().flatten().all(|&i| (i as usize) < mesh.positions.len()));
         }
+    }
+}
+
+/// Colours of vertices as the numbers that they are; of faces one a triangle, so twice for a quadrilateral; in text and in
+/// bytes alike.
+#[test]
+fn colours_of_vertices_and_faces_are_read() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
+        property list uchar int vertex_indices\nproperty float r\nproperty float g\nproperty float b\nend_header\n\
+        0 0 0 1 2 3\n1 0 0 4 5 6\n1 1 0 7 8 9\n0 1 0 255 0 1\n4 0 1 2 3 0.5 0.25 1\n3 0 1 2 0 1 0\n";
+    let header = text.replace("ascii", "binary_little_endian");
+    let mut bytes = header.as_bytes()[..header.find("end_header\n").unwrap() + 11].to_vec();
+    let corners = [([0f32, 0.0, 0.0], [1u8, 2, 3]), ([1.0, 0.0, 0.0], [4, 5, 6]), ([1.0, 1.0, 0.0], [7, 8, 9])];
+    for (p, colour) in corners.into_iter().chain([([0.0, 1.0, 0.0], [255, 0, 1])]) {
+        bytes.extend(p.into_iter().flat_map(f32::to_le_bytes));
+        bytes.extend(colour);
+    }
+    for (face, colour) in [(&[0i32, 1, 2, 3][..], [0.5f32, 0.25, 1.0]), (&[0, 1, 2], [0.0, 1.0, 0.0])] {
+        bytes.push(face.len() as u8);
+        bytes.extend(face.iter().flat_map(|i| i.to_le_bytes()));
+        bytes.extend(colour.into_iter().flat_map(f32::to_le_bytes));
+    }
+    for mesh in [parse_ply(text.into()).unwrap(), parse_ply(bytes).unwrap()] {
+        let colours = vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0], [255.0, 0.0, 1.0]];
+        assert_eq!(mesh.colours, Some(colours));
+        assert_eq!(mesh.face_colours, Some(vec![[0.5, 0.25, 1.0], [0.5, 0.25, 1.0], [0.0, 1.0, 0.0]]));
     }
 }

@@ -2,7 +2,7 @@
 
 use tyndall::{
     feature::{Facing, Feature, Space},
-    film::{Average, LayerKind},
+    film::{Average, LayerKind, Recorded},
 };
 
 use super::object::{Object, Report};
@@ -50,7 +50,7 @@ pub(super) fn layers(object: &mut Object, report: &mut Report) -> Vec<LayerKind>
         match layer(name, kind) {
             Some(layer) => {
                 let here = |reason| Ignored { span: list.span, reason };
-                report.ignored.extend(difference(layer.feature).map(here));
+                report.ignored.extend(difference(layer.recorded).map(here));
                 layers.push(layer);
             }
             None if LATER.contains(&kind) => {
@@ -67,10 +67,12 @@ pub(super) fn layers(object: &mut Object, report: &mut Report) -> Vec<LayerKind>
 }
 
 /// What Mitsuba's numbers are that ours are not.
-fn difference(feature: Feature) -> Option<&'static str> {
-    match feature {
-        Feature::Depth => Some("depth is the distance from the eye, not from the near clipping plane"),
-        Feature::Primitive | Feature::Object => {
+fn difference(recorded: Recorded) -> Option<&'static str> {
+    match recorded {
+        Recorded::Surface(Feature::Depth) => {
+            Some("depth is the distance from the eye, not from the near clipping plane")
+        }
+        Recorded::Surface(Feature::Primitive | Feature::Object) => {
             Some("indices are those of tyndall: shapes as the file has them, rectangles and cubes in triangles")
         }
         _ => None,
@@ -81,5 +83,5 @@ fn difference(feature: Feature) -> Option<&'static str> {
 pub(super) fn layer(name: &str, kind: &str) -> Option<LayerKind> {
     let (_, feature, endings) = KINDS.into_iter().find(|(known, ..)| *known == kind)?;
     let channels = endings.iter().map(|ending| format!("{name}.{ending}")).collect();
-    Some(LayerKind { feature, channels, average: Average::Samples })
+    Some(LayerKind { recorded: Recorded::Surface(feature), channels, average: Average::Samples })
 }

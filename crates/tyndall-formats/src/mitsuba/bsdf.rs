@@ -1,11 +1,12 @@
-//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, their rough kin, `thindielectric`, `plastic`, `null`; `blendbsdf`, `mask`, `bumpmap`, `normalmap`, and
-//! `twosided` around one that reflects or two.
+//! `<bsdf>`: `diffuse`, `conductor`, `dielectric`, `plastic`, their rough kin, `thindielectric`, `principled` and
+//! `principledthin`, `null`; `blendbsdf`, `mask`, `bumpmap`, `normalmap`, and `twosided` around one that reflects or two.
 
 use tyndall::relief::Rule;
 use tyndall_optics::spectra;
 
 use super::object::{Child, Measure, Object, Report};
 use super::scene::Builder;
+use super::texture::Answer;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
@@ -87,7 +88,10 @@ impl<'t> Builder<'t> {
         let plugin = words::plugin(child.element, &mut self.report)?;
         let what = match plugin {
             "twosided" => "two-sided already",
-            "dielectric" | "roughdielectric" | "thindielectric" | "null" | "mask" => "not a surface that only reflects",
+            "dielectric" | "roughdielectric" | "thindielectric" | "principledthin" | "null" | "mask" => {
+                "not a surface that only reflects"
+            }
+            "principled" if super::principled::is_clear(child.element) => "not a surface that only reflects",
             _ => return Some(()),
         };
         let error = SceneError::at(child.element.span_of("type"), format!("\"{plugin}\" is {what}"));
@@ -108,7 +112,7 @@ impl<'t> Builder<'t> {
             let message = format!("\"{}\" is made of {N} <bsdf>, not of {}", object.kind(), parts.len());
             self.report.errors.push(SceneError::at(object.element.span, message));
         }
-        let share = self.varying_or(object, share, Measure::Part, 0.5);
+        let share = self.number_or(object, share, Measure::Part, 0.5);
         let parts: Vec<_> = parts.iter().map(|part| self.part(part, two_sided)).collect();
         let parts: Vec<_> = parts.into_iter().collect::<Option<_>>()?;
         Some((parts.try_into().ok()?, share))
@@ -137,10 +141,11 @@ impl<'t> Builder<'t> {
                 roughness: self.roughness(plugin == "roughconductor", &mut object),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
-            "plastic" => MaterialKind::Plastic {
+            "plastic" | "roughplastic" => MaterialKind::Plastic {
                 eta: relative_index(&mut object, "polypropylene", &mut self.report),
                 reflectance: self.varying_or(&mut object, "diffuse_reflectance", Measure::Part, 0.5),
                 nonlinear: object.flag("nonlinear", false, &mut self.report),
+                roughness: (plugin == "roughplastic").then(|| self.roughness(true, &mut object)),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
             "measured" => {
@@ -151,6 +156,8 @@ impl<'t> Builder<'t> {
                 };
                 MaterialKind::Measured { path: self.file(name) }
             }
+            "principled" => self.principled(&mut object),
+            "principledthin" => self.principled_thin(&mut object),
             "blendbsdf" => {
                 if !object.has("weight") {
                     let error = SceneError::at(element.span, "\"blendbsdf\" lacks a \"weight\"");
@@ -194,7 +201,9 @@ impl<'t> Builder<'t> {
         }
         let (texture, bsdf) = (texture?, bsdf?);
         let of = self.part(&bsdf, two_sided);
-        let varying = self.texture(texture.element).map(|id| Spanned::new(Varying::Texture(id), texture.at.span));
+        let answer = if plugin == "bumpmap" { Answer::Number } else { Answer::Colour };
+        let varying = self.texture(texture.element, answer);
+        let varying = varying.map(|id| Spanned::new(Varying::Texture(id), texture.at.span));
         let (of, texture) = (of?, varying?);
         let map = match plugin {
             "bumpmap" => ReliefMap::Heights { texture, scale: scale.map_or(1.0, |scale| scale.value) },
@@ -213,7 +222,8 @@ impl<'t> Builder<'t> {
         object.ignore(&["sample_visible"], "only visible normals are sampled", &mut self.report);
         let kinds = [("beckmann", MicrofacetKind::Beckmann), ("ggx", MicrofacetKind::Ggx)];
         let distribution = object.choice("distribution", &kinds, &mut self.report);
-        let [both, u, v] = ["alpha", "alpha_u", "alpha_v"].map(|name| self.varying(object, name, Measure::Amount));
+        let [both, u, v] =
+            ["alpha", "alpha_u", "alpha_v"].map(|name| self.varying_number(object, name, Measure::Amount));
         let default = || Spanned::new(Varying::constant(0.1), at);
         let (u, v) = match (both, u, v) {
             (Some(both), None, None) => (both.clone(), both),

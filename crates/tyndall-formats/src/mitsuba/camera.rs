@@ -1,5 +1,5 @@
-//! `<sensor>`: `perspective`, `thinlens`, `orthographic`, `radiancemeter`, `irradiancemeter`, `batch`; with `<film>`,
-//! `<rfilter>` and `<sampler>`.
+//! `<sensor>`: `perspective`, `thinlens`, `orthographic`, `radiancemeter`, `irradiancemeter`, `distant`, `batch`; with
+//! `<film>`, `<rfilter>` and `<sampler>`.
 //!
 //! Mitsuba's camera looks along its own +z with +x to the left of the image; a [`CameraDesc`] has +x to the right. So the
 //! x axis is turned round: `to_world · diag(−1, 1, 1)`.
@@ -11,10 +11,15 @@ use super::scene::Builder;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
-    CameraDesc, CameraKind, CropDesc, FilmDesc, FilterDesc, FovAxis, FrameDesc, Ignored, SamplerDesc, ThinLensDesc,
+    CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc, Ignored, SamplerDesc,
+    ThinLensDesc,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
+
+/// What a sensor's response would be.
+const NO_RESPONSE: &str =
+    "a response weighs wavelengths, in Mitsuba's spectral variants only: here the film sees as the eye does";
 
 /// The largest film \[pixels a side\].
 const LARGEST_SIDE: u32 = 1 << 16;
@@ -38,8 +43,8 @@ pub(super) fn sensor<'t>(
     let sampler = sampler.unwrap_or_else(|| default_sampler(element.span));
     let camera = camera(builder, object, plugin, shape)?;
     match &camera.kind {
-        CameraKind::RadianceMeter if (film.width, film.height) != (1, 1) => {
-            let error = SceneError::at(film.span, "the film of a \"radiancemeter\" has one pixel");
+        CameraKind::RadianceMeter | CameraKind::Distant { .. } if (film.width, film.height) != (1, 1) => {
+            let error = SceneError::at(film.span, format!("the film of a \"{plugin}\" has one pixel"));
             builder.report.errors.push(error.help("set \"width\" and \"height\" to 1"));
         }
         CameraKind::Batch(cameras) if !(film.width as usize).is_multiple_of(cameras.len()) => {
@@ -63,16 +68,21 @@ fn camera<'t>(
     let medium = medium.and_then(|m| Some(Spanned::new(builder.medium_id(m.element)?, m.at.span)));
     let parts = if plugin == "batch" { object.nested("sensor") } else { Vec::new() };
     let cameras: Vec<_> = parts.iter().filter_map(|part| builder.part_of_batch(part.element)).collect();
+    let target = if plugin == "distant" { builder.target(&mut object)? } else { DistantTarget::Scene };
     let report = &mut builder.report;
     let mut to_world = DMat4::IDENTITY;
     let kind = match plugin {
         "perspective" | "thinlens" => {
             let (fov, axis) = field_of_view(&mut object, report);
             let lens = (plugin == "thinlens").then(|| thin_lens(&mut object, report)).flatten();
-            object.not_yet(&["principal_point_offset_x", "principal_point_offset_y"], report);
+            let offset = match plugin {
+                "perspective" => ["principal_point_offset_x", "principal_point_offset_y"]
+                    .map(|name| object.float(name, |_| true, "a number", report).map_or(0.0, |offset| offset.value)),
+                _ => [0.0; 2],
+            };
             to_world = object.transform(report);
             check_rigid(to_world, object.element, report);
-            CameraKind::Perspective { fov, frame: FrameDesc::of_film(axis), lens }
+            CameraKind::Perspective { fov, frame: FrameDesc { offset, ..FrameDesc::of_film(axis) }, lens }
         }
         "orthographic" => {
             to_world = object.transform(report);
@@ -81,6 +91,10 @@ fn camera<'t>(
         "radiancemeter" => {
             to_world = meter_transform(&mut object, report);
             CameraKind::RadianceMeter
+        }
+        "distant" => {
+            to_world = facing(&mut object, report);
+            CameraKind::Distant { target }
         }
         "irradiancemeter" => {
             let Some(shape) = shape else {
@@ -101,13 +115,24 @@ fn camera<'t>(
         object.ignore(&["focus_distance"], "without a lens everything is in focus", report);
     }
     object.ignore(&["shutter_open", "shutter_close"], "nothing moves", report);
-    object.not_yet(&["srf"], report);
+    object.ignore(&["srf"], NO_RESPONSE, report);
     object.finish(report);
     let to_world = to_world * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     Some(CameraDesc { span, to_world, kind, medium })
 }
 
 impl<'t> Builder<'t> {
+    /// Where the rays of a distant sensor go.
+    fn target(&mut self, object: &mut Object<'t>) -> Option<DistantTarget> {
+        if let Some(child) = object.object_of("target", "shape") {
+            let plugin = words::plugin(child.element, &mut self.report)?;
+            let shape = self.shape(plugin, child.element)?;
+            return Some(DistantTarget::Shape(Box::new(shape)));
+        }
+        let point = object.point("target", &mut self.report);
+        Some(point.map_or(DistantTarget::Scene, |point| DistantTarget::Point(point.value.to_array())))
+    }
+
     /// A sensor of a batch, whose film and sampler are the batch's.
     fn part_of_batch(&mut self, element: &'t Element) -> Option<CameraDesc> {
         let plugin = words::plugin(element, &mut self.report)?;
@@ -164,8 +189,23 @@ fn meter_transform(object: &mut Object, report: &mut Report) -> DMat4 {
     }
 }
 
+/// `to_world`, or a direction of the rays.
+fn facing(object: &mut Object, report: &mut Report) -> DMat4 {
+    let to_world = object.transform(report);
+    let Some(direction) = object.point("direction", report) else { return to_world };
+    if object.has("to_world") {
+        report.errors.push(SceneError::at(direction.span, "\"direction\" cannot stand beside \"to_world\""));
+    }
+    let Some(z) = direction.value.try_normalize() else {
+        report.errors.push(SceneError::at(direction.span, "a \"direction\" has a length"));
+        return to_world;
+    };
+    let (x, y) = z.any_orthonormal_pair();
+    DMat4::from_mat3(DMat3::from_cols(x, y, z))
+}
+
 /// `fov` along `fov_axis`, or the focal length of a 35 mm camera, whose picture is 36 × 24 mm.
-fn field_of_view(object: &mut Object, report: &mut Report) -> (Spanned<f64>, FovAxis) {
+pub(super) fn field_of_view(object: &mut Object, report: &mut Report) -> (Spanned<f64>, FovAxis) {
     let axes = [
         ("x", FovAxis::X),
         ("y", FovAxis::Y),

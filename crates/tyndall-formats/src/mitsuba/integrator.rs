@@ -1,6 +1,6 @@
 //! `<integrator>`: what makes the same image is mapped to ours, with a note where something is different.
 
-use tyndall::film::LayerKind;
+use tyndall::{film::LayerKind, integrator::Counted};
 
 use super::aov;
 use super::object::{Object, Report};
@@ -61,6 +61,7 @@ pub(super) fn integrator<'t>(builder: &mut Builder<'t>, element: &'t Element) ->
     Some(IntegratorDesc {
         name: Spanned::new(name.into(), element.span_of("type")),
         max_depth,
+        counted: if name.contains("volpath") { Counted::Turns } else { Counted::Scatterings },
         rr_depth,
         hide_emitters,
         layers,

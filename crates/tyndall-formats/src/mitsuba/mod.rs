@@ -22,6 +22,7 @@ mod medium;
 mod number;
 mod object;
 mod parameters;
+mod principled;
 mod scene;
 mod shape;
 mod spectrum;

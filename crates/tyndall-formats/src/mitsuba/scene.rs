@@ -2,7 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
+use tyndall::integrator::Counted;
+
 use super::object::{Files, Ids, Object, Report};
+use super::texture::Answer;
 use super::tree::{Element, Tree};
 use super::{camera, integrator, words};
 use crate::desc::{
@@ -25,7 +28,7 @@ pub(super) struct Builder<'t> {
     /// The materials that are being built, each inside of the one before.
     open_materials: Vec<(Span, bool)>,
     built_media: HashMap<Span, Option<MediumId>>,
-    pub(super) built_textures: HashMap<Span, Option<TextureId>>,
+    pub(super) built_textures: HashMap<(Span, Answer), Option<TextureId>>,
     pub(super) texture_depth: u32,
     pub(super) built_groups: HashMap<Span, GroupId>,
     /// The materials of shapes that name none: that of a surface, and that of one that shines.
@@ -122,9 +125,7 @@ impl<'t> Builder<'t> {
         for medium in scene.nested("medium") {
             self.medium_id(medium.element);
         }
-        for texture in scene.nested("texture") {
-            self.texture(texture.element);
-        }
+        let textures = scene.nested("texture");
         for volume in scene.nested("volume") {
             words::plugin(volume.element, &mut self.report);
         }
@@ -145,6 +146,9 @@ impl<'t> Builder<'t> {
             None => None,
         };
         let integrator = integrator.unwrap_or_else(|| default_integrator(root.span));
+        for texture in textures {
+            self.unless_built(texture.element);
+        }
         let sensor = self.sensor(&mut scene);
         let seen = sensor.and_then(|(element, shape)| camera::sensor(self, element, shape));
         scene.leave_to_references(referred);
@@ -228,5 +232,12 @@ impl<'t> Builder<'t> {
 /// Mitsuba's `path`, which it takes if a scene names none.
 pub(super) fn default_integrator(span: Span) -> IntegratorDesc {
     let name = Spanned::new("path".into(), span);
-    IntegratorDesc { name, max_depth: None, rr_depth: None, hide_emitters: false, layers: Vec::new() }
+    IntegratorDesc {
+        name,
+        max_depth: None,
+        counted: Counted::default(),
+        rr_depth: None,
+        hide_emitters: false,
+        layers: Vec::new(),
+    }
 }

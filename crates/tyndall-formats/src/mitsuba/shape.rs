@@ -35,7 +35,7 @@ impl<'t> Builder<'t> {
         }
     }
 
-    fn shape(&mut self, plugin: &str, element: &'t Element) -> Option<ShapeDesc> {
+    pub(super) fn shape(&mut self, plugin: &str, element: &'t Element) -> Option<ShapeDesc> {
         let mut object = self.object(element);
         let emitter = object.only("emitter", &mut self.report);
         let emission = emitter.and_then(|emitter| self.area_light(emitter.element));

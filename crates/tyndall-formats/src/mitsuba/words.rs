@@ -23,28 +23,21 @@ const PLUGINS: &[Plugins] = &[
             "roughconductor",
             "null",
             "plastic",
+            "roughplastic",
             "measured",
+            "principled",
+            "principledthin",
             "blendbsdf",
             "mask",
             "bumpmap",
             "normalmap",
         ],
-        later: &[
-            "circular",
-            "hair",
-            "measured_polarized",
-            "polarizer",
-            "pplastic",
-            "principled",
-            "principledthin",
-            "retarder",
-            "roughplastic",
-        ],
+        later: &["circular", "hair", "measured_polarized", "polarizer", "pplastic", "retarder"],
     },
     Plugins {
         tag: "emitter",
-        known: &["area", "constant", "envmap", "point", "spot", "directional"],
-        later: &["directionalarea", "projector", "sunsky", "timed_sunsky"],
+        known: &["area", "constant", "directional", "directionalarea", "envmap", "point", "projector", "spot"],
+        later: &["sunsky", "timed_sunsky"],
     },
     Plugins { tag: "film", known: &["hdrfilm"], later: &["specfilm"] },
     Plugins {
@@ -67,7 +60,7 @@ const PLUGINS: &[Plugins] = &[
         later: &["stokes"],
     },
     Plugins { tag: "medium", known: &["homogeneous"], later: &["heterogeneous"] },
-    Plugins { tag: "phase", known: &["isotropic", "hg", "rayleigh"], later: &["blendphase", "sggx", "tabphase"] },
+    Plugins { tag: "phase", known: &["isotropic", "hg", "rayleigh", "tabphase", "blendphase"], later: &["sggx"] },
     Plugins { tag: "rfilter", known: &["box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"], later: &[] },
     Plugins {
         tag: "sampler",
@@ -76,8 +69,8 @@ const PLUGINS: &[Plugins] = &[
     },
     Plugins {
         tag: "sensor",
-        known: &["perspective", "thinlens", "orthographic", "irradiancemeter", "radiancemeter", "batch"],
-        later: &["distant"],
+        known: &["perspective", "thinlens", "orthographic", "irradiancemeter", "radiancemeter", "distant", "batch"],
+        later: &[],
     },
     Plugins {
         tag: "shape",
@@ -95,7 +88,7 @@ const PLUGINS: &[Plugins] = &[
         ],
         later: &["bsplinecurve", "ellipsoids", "ellipsoidsmesh", "linearcurve", "merge", "sdfgrid"],
     },
-    Plugins { tag: "texture", known: &["bitmap", "checkerboard"], later: &["mesh_attribute", "volume"] },
+    Plugins { tag: "texture", known: &["bitmap", "checkerboard", "mesh_attribute"], later: &["volume"] },
     Plugins { tag: "volume", known: &["constvolume"], later: &["gridvolume"] },
 ];
 

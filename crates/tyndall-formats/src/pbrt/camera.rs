@@ -72,7 +72,7 @@ fn frame(p: &mut Params) -> FrameDesc {
     {
         p.error(SceneError::at(window.span, "this screen window is empty").help("it is [ x_min x_max y_min y_max ]"));
     }
-    FrameDesc { axis: FovAxis::Smaller, aspect, screen_window }
+    FrameDesc { aspect, screen_window, ..FrameDesc::of_film(FovAxis::Smaller) }
 }
 
 fn perspective(p: &mut Params) -> CameraKind {

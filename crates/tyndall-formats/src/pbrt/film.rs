@@ -1,11 +1,7 @@
 //! `Film` and `PixelFilter`.
 
-use tyndall::{
-    feature::{Facing, Feature, Space},
-    film::{Average, LayerKind},
-};
-
 use super::Reader;
+use super::layers::{gbuffer, spectral};
 use super::params::Params;
 use super::parser::Statement;
 use crate::desc::{CropDesc, FilmDesc, FilterDesc};
@@ -30,14 +26,16 @@ impl FilmDesc {
     }
 }
 
+const FILMS: [&str; 3] = ["rgb", "gbuffer", "spectral"];
+
 /// The largest side of an image \[pixels\].
 const MAX_SIDE: u32 = 1 << 16;
 
 impl Reader {
     pub(super) fn film(&mut self, mut s: Statement<'_>) {
         let name = s.names[0].clone();
-        if !["rgb", "gbuffer"].contains(&&*name.value) {
-            return self.unknown_kind("film", &name, &["rgb", "gbuffer"], &["spectral"]);
+        if !FILMS.contains(&&*name.value) {
+            return self.unknown_kind("film", &name, &FILMS, &[]);
         }
         if name.value == "gbuffer" {
             let reason = "dzdx, dzdy and variances are not written: the layer `stderr` has the standard errors";
@@ -59,15 +57,12 @@ impl Reader {
         p.ignore("savefp16", "images are written in single precision");
         p.later_unless("whitebalance", 0.0);
         p.later("maxcomponentvalue");
-        if let Some(sensor) = p.string_opt("sensor")
-            && sensor.value != "cie1931"
-        {
-            p.error(
-                SceneError::not_yet(sensor.span, "measured sensors are not supported yet")
-                    .help("use \"cie1931\", the default"),
-            );
-        }
-        let layers = if name.value == "gbuffer" { gbuffer(&mut p) } else { Vec::new() };
+        sensor(&mut p);
+        let layers = match &*name.value {
+            "gbuffer" => gbuffer(&mut p),
+            "spectral" => spectral(&mut p),
+            _ => Vec::new(),
+        };
         self.finish_params(p);
         if self.settings.film.is_some() {
             self.ignore(s.whole, "it replaces the film before");
@@ -100,31 +95,43 @@ impl Reader {
     }
 }
 
-/// The layers of pbrt's `gbuffer`, by their names there.
-fn gbuffer(p: &mut Params) -> Vec<LayerKind> {
-    let space = match p.string_opt("coordinatesystem") {
-        Some(word) if word.value == "world" => Space::World,
-        Some(word) if word.value != "camera" => {
-            let error = SceneError::at(word.span, format!("there is no coordinate system \"{}\"", word.value));
-            p.error(error.suggest(&word.value, ["camera", "world"]));
-            Space::Camera
-        }
-        _ => Space::Camera,
-    };
-    let layer = |feature, average, channels: &[&str]| LayerKind {
-        feature,
-        average,
-        channels: channels.iter().map(ToString::to_string).collect(),
-    };
-    let (geometric, shading) =
-        (Feature::GeometricNormal(space, Facing::Viewer), Feature::ShadingNormal(space, Facing::Viewer));
-    vec![
-        layer(Feature::Albedo, Average::Samples, &["Albedo.R", "Albedo.G", "Albedo.B"]),
-        layer(Feature::Position(space), Average::Hits, &["P.X", "P.Y", "P.Z"]),
-        layer(geometric, Average::Directions, &["N.X", "N.Y", "N.Z"]),
-        layer(shading, Average::Directions, &["Ns.X", "Ns.Y", "Ns.Z"]),
-        layer(Feature::Uv, Average::Hits, &["u", "v"]),
-    ]
+/// pbrt's cameras whose response has been measured.
+const SENSORS: [&str; 18] = [
+    "cie1931",
+    "canon_eos_100d",
+    "canon_eos_1dx_mkii",
+    "canon_eos_200d",
+    "canon_eos_200d_mkii",
+    "canon_eos_5d",
+    "canon_eos_5d_mkii",
+    "canon_eos_5d_mkiii",
+    "canon_eos_5d_mkiv",
+    "canon_eos_5ds",
+    "canon_eos_m",
+    "hasselblad_l1d_20c",
+    "nikon_d810",
+    "nikon_d850",
+    "sony_ilce_6400",
+    "sony_ilce_7m3",
+    "sony_ilce_7rm3",
+    "sony_ilce_9",
+];
+
+/// The observer of CIE 1931; the curves of cameras are others' and not part of tyndall.
+fn sensor(p: &mut Params) {
+    let Some(sensor) = p.string_opt("sensor") else { return };
+    let name = &*sensor.value;
+    if !SENSORS.contains(&name) {
+        let error = SceneError::at(sensor.span, format!("there is no sensor \"{name}\""));
+        p.error(error.suggest(name, SENSORS));
+    } else if name != SENSORS[0] {
+        p.error(
+            SceneError::not_yet(sensor.span, format!("the response of the camera \"{name}\" is not part of tyndall"))
+                .help(
+                    "its measured curves may not be passed on; \"cie1931\", the default, sees colours as the eye does",
+                ),
+        );
+    }
 }
 
 /// The part of the film that is rendered: `cropwindow` in parts of the image, or `pixelbounds`; the first wins.

@@ -16,7 +16,7 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 10] = [
+const MATERIALS: [&str; 11] = [
     "coatedconductor",
     "coateddiffuse",
     "conductor",
@@ -26,9 +26,10 @@ const MATERIALS: [&str; 10] = [
     "interface",
     "measured",
     "mix",
+    "subsurface",
     "thindielectric",
 ];
-const LATER_MATERIALS: [&str; 2] = ["hair", "subsurface"];
+const LATER_MATERIALS: [&str; 1] = ["hair"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -45,6 +46,7 @@ impl Reader {
         let p = self.params("material", &mut s, &defaults);
         let desc = self.material_of(s.whole, None, &name, p);
         let id = MaterialId(self.materials.push(s.whole, desc));
+        self.fillings.settle(id);
         self.state.now.material = Some(Spanned::new(id, s.whole));
     }
 
@@ -60,7 +62,7 @@ impl Reader {
         }
         let kind = kind.unwrap_or(Spanned::new("interface".into(), name.span));
         let desc = self.material_of(s.whole, Some(name.value.to_string()), &kind, p);
-        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(drop));
+        self.checked(|r| r.materials.define(&name.value, s.whole, desc).map(|id| r.fillings.settle(MaterialId(id))));
     }
 
     pub(super) fn use_material(&mut self, name: &Spanned<Cow<'_, str>>) {
@@ -86,6 +88,7 @@ impl Reader {
             "coatedconductor" => coated_conductor(&mut p, &self.textures),
             "measured" => measured(&mut p),
             "mix" => self.mix(&mut p),
+            "subsurface" => self.subsurface(span, &mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
                 self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
@@ -259,7 +262,7 @@ fn measured(p: &mut Params) -> MaterialKind {
 const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
 
 /// The roughness of a material with one surface.
-fn rough(p: &mut Params, textures: &Textures) -> RoughnessDesc {
+pub(super) fn rough(p: &mut Params, textures: &Textures) -> RoughnessDesc {
     let remap = remap(p);
     roughness(p, textures, ROUGHNESS, remap)
 }

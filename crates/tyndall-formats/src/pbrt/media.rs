@@ -67,7 +67,7 @@ fn coefficients(p: &mut Params) -> Coefficients {
     Coefficients::AbsorptionScattering { sigma_a, sigma_s }
 }
 
-fn phase(p: &mut Params) -> PhaseDesc {
+pub(super) fn phase(p: &mut Params) -> PhaseDesc {
     let g = p.float_in("g", 0.0, "between -1 and 1, both excluded", |g| g.abs() < 1.0);
     if g.value == 0.0 { PhaseDesc::Isotropic } else { PhaseDesc::HenyeyGreenstein { g } }
 }

@@ -16,6 +16,7 @@ mod camera;
 mod color_space;
 mod directives;
 mod film;
+mod layers;
 mod lexer;
 mod lights;
 mod materials;
@@ -27,6 +28,7 @@ mod parser;
 mod settings;
 mod shapes;
 mod state;
+mod subsurface;
 #[cfg(test)]
 mod tests;
 mod textures;
@@ -44,6 +46,7 @@ use names::Registry;
 use parser::Parser;
 use settings::Settings;
 use state::{Block, State};
+use subsurface::Fillings;
 use textures::Textures;
 
 /// The deepest chain of includes.
@@ -102,6 +105,7 @@ struct Reader {
     materials: Registry<MaterialDesc>,
     default_material: Option<MaterialId>,
     media: Registry<MediumDesc>,
+    fillings: Fillings,
     groups: Registry<GroupDesc>,
     /// The object that is being defined, and where its definition starts.
     group: Option<(u32, Span)>,
@@ -124,6 +128,7 @@ impl Reader {
             materials: Registry::new("material"),
             default_material: None,
             media: Registry::new("medium"),
+            fillings: Fillings::default(),
             groups: Registry::new("object"),
             group: None,
             shapes: Vec::new(),
@@ -196,6 +201,10 @@ impl Reader {
         }
         let mut errors = self.errors;
         let settings = self.settings.finish(start, &mut errors);
+        let materials = self.materials.finish(&mut errors);
+        let mut groups = self.groups.finish(&mut errors);
+        self.fillings.check_mixtures(&materials, &mut errors);
+        self.fillings.fill(self.shapes.iter_mut().chain(groups.iter_mut().flat_map(|group| &mut group.shapes)));
         let desc = SceneDesc {
             options: settings.options,
             camera: settings.camera,
@@ -203,10 +212,10 @@ impl Reader {
             sampler: settings.sampler,
             integrator: settings.integrator,
             textures: self.textures.list,
-            materials: self.materials.finish(&mut errors),
+            materials,
             media: self.media.finish(&mut errors),
             shapes: self.shapes,
-            groups: self.groups.finish(&mut errors),
+            groups,
             instances: self.instances,
             lights: self.lights,
             ignored: self.ignored,

@@ -1,5 +1,7 @@
 //! `Option`, `Sampler` and `Integrator`, and the settings of the scene as they come in.
 
+use tyndall::integrator::Counted;
+
 use super::Reader;
 use super::params::quote;
 use super::parser::Statement;
@@ -67,6 +69,7 @@ impl Settings {
             integrator: self.integrator.unwrap_or_else(|| IntegratorDesc {
                 name: named("volpath"),
                 max_depth: None,
+                counted: Counted::Scatterings,
                 rr_depth: None,
                 hide_emitters: false,
                 layers: Vec::new(),
@@ -215,8 +218,13 @@ impl Reader {
         p.ignore("samplelights", "light sampling never changes the mean");
         p.ignore("samplebsdf", "how directions are sampled never changes the mean");
         self.finish_params(p);
-        let (rr_depth, hide_emitters, layers) = (None, false, Vec::new());
-        self.settings.integrator =
-            Some(IntegratorDesc { name: name.map(Into::into), max_depth, rr_depth, hide_emitters, layers });
+        self.settings.integrator = Some(IntegratorDesc {
+            name: name.map(Into::into),
+            max_depth,
+            counted: Counted::Scatterings,
+            rr_depth: None,
+            hide_emitters: false,
+            layers: Vec::new(),
+        });
     }
 }

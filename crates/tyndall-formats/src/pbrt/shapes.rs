@@ -76,14 +76,10 @@ impl Reader {
     }
 
     /// Puts a shape into the world, or into the object that is being defined.
-    fn place(&mut self, shape: ShapeDesc) {
+    fn place(&mut self, mut shape: ShapeDesc) {
         let Some((group, _)) = self.group else { return self.shapes.push(shape) };
-        if let Some(light) = &shape.emission {
-            self.errors.push(
-                SceneError::at(shape.span, "shapes of an object cannot emit light")
-                    .help("place the light outside of ObjectBegin and ObjectEnd")
-                    .related(light.span, "this makes it emit"),
-            );
+        if let Some(light) = shape.emission.take() {
+            self.ignore(light.span, "shapes of an object do not shine, as in pbrt: place it outside of the object");
         }
         if let Some(group) = self.groups.get_mut(group) {
             group.shapes.push(shape);
@@ -168,7 +164,7 @@ fn triangles(p: &mut Params) -> Option<MeshDesc> {
 }
 
 fn patches(p: &mut Params) -> Option<PatchDesc> {
-    p.later("emissionfilename");
+    p.ignore("emissionfilename", "it only guides how light from the patch is sampled");
     let Corners { positions, normals, uvs } = corners(p, 4)?;
     let indices = faces(p, positions.len(), [0, 1, 2, 3])?;
     Some(PatchDesc { positions, indices, normals, uvs })

@@ -164,12 +164,46 @@ impl Microfacets {
     /// A normal among those visible from `wo` (`wo_z > 0`), with `u` in [0, 1).
     #[inline]
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
-        let o = Vec3::new(wo.x * self.alpha_x, wo.y * self.alpha_y, wo.z);
-        let o = o / o.length();
+        let o = self.unit(wo);
         let h = match self.distribution {
             Distribution::TrowbridgeReitz => visible_on_cap(o, u),
-            Distribution::Beckmann => visible_gaussian(o, u),
+            Distribution::Beckmann => {
+                let [x, y] = slopes(o, u);
+                facet_of_slopes(o, x, y)
+            }
         };
+        self.stretch(h)
+    }
+
+    /// Every normal of [`Self::sample_visible`] for the middles of `n` by `n` cells of `u`: a quadrature over what is
+    /// visible from `wo`, for which each Gaussian slope is inverted once.
+    pub(super) fn for_visible_grid(&self, wo: Vec3, n: usize, mut f: impl FnMut(Vec3)) {
+        let o = self.unit(wo);
+        let middle = |i: usize| (i as f32 + 0.5) / n as f32;
+        let slopes: Vec<_> = match self.distribution {
+            Distribution::TrowbridgeReitz => Vec::new(),
+            Distribution::Beckmann => (0..n).map(|i| slopes(o, Vec2::splat(middle(i)))).collect(),
+        };
+        for i in 0..n {
+            for j in 0..n {
+                f(self.stretch(match self.distribution {
+                    Distribution::TrowbridgeReitz => visible_on_cap(o, Vec2::new(middle(i), middle(j))),
+                    Distribution::Beckmann => facet_of_slopes(o, slopes[i][0], slopes[j][1]),
+                }));
+            }
+        }
+    }
+
+    /// `w` as it is seen where the roughness is 1.
+    #[inline]
+    fn unit(&self, w: Vec3) -> Vec3 {
+        let o = Vec3::new(w.x * self.alpha_x, w.y * self.alpha_y, w.z);
+        o / o.length()
+    }
+
+    /// A normal where the roughness is 1, as it is here.
+    #[inline]
+    fn stretch(&self, h: Vec3) -> Vec3 {
         Vec3::new(h.x * self.alpha_x, h.y * self.alpha_y, h.z).normalize()
     }
 }
@@ -184,13 +218,17 @@ fn visible_on_cap(o: Vec3, u: Vec2) -> Vec3 {
     Vec3::new(sin_theta * cos_phi + o.x, sin_theta * sin_phi + o.y, above)
 }
 
-/// A visible normal of unit roughness after Beckmann, not normalised, for a unit `o`.
-fn visible_gaussian(o: Vec3, u: Vec2) -> Vec3 {
+/// The slopes of a visible facet of unit roughness after Beckmann, within the plane of a unit `o` and across it.
+fn slopes(o: Vec3, u: Vec2) -> [f64; 2] {
+    let o = o.as_dvec3();
+    [visible_slope(o.z, o.x.hypot(o.y), f64::from(u.x)), visible_slope(1.0, 0.0, f64::from(u.y))]
+}
+
+/// The normal of the facet with these slopes within the plane of `o` and across it, not normalised.
+fn facet_of_slopes(o: Vec3, x: f64, y: f64) -> Vec3 {
     let o = o.as_dvec3();
     let sin = o.x.hypot(o.y);
     let along = if sin == 0.0 { glam::DVec2::X } else { o.truncate() / sin };
-    let x = visible_slope(o.z, sin, f64::from(u.x));
-    let y = visible_slope(1.0, 0.0, f64::from(u.y));
     // A facet of slope (x, y) has the normal (−x, −y, 1), turned to the azimuth of o.
     Vec3::new((along.y * y - along.x * x) as f32, (-along.y * x - along.x * y) as f32, 1.0)
 }

@@ -18,24 +18,32 @@ pub mod fresnel;
 pub mod measured;
 pub mod microfacet;
 
+mod burley;
 mod coated;
 mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
 mod plastic;
+mod principled;
+mod principled_thin;
 mod rough_conductor;
 mod rough_dielectric;
+mod rough_plastic;
 mod thin_dielectric;
 
+pub use burley::Burley;
 pub use coated::{Base, Coated};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
 pub use plastic::{Plastic, internal_reflectance};
+pub use principled::{Principled, PrincipledFixed};
+pub use principled_thin::{PrincipledThin, ThinRates};
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::{RoughCoat, RoughPlastic};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
@@ -103,9 +111,9 @@ pub struct BsdfSample {
     pub eta: f32,
 }
 
-/// A model of a surface. The methods only forward.
+/// A model of a surface. The methods only forward. Tables are the scene's: a model refers to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Bsdf<'a> {
+pub enum Bsdf<'s> {
     /// Lambert's law.
     Diffuse(Diffuse),
     /// A polished metal.
@@ -122,10 +130,16 @@ pub enum Bsdf<'a> {
     DiffuseTransmission(DiffuseTransmission),
     /// A diffuse base under a smooth coat.
     Plastic(Plastic),
+    /// A diffuse base under a coat with microfacets.
+    RoughPlastic(RoughPlastic<'s>),
+    /// Burley's model of solids.
+    Principled(Principled<'s>),
+    /// Burley's model of sheets.
+    PrincipledThin(PrincipledThin<'s>),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Coated),
     /// As it was measured.
-    Measured(Measured<'a>),
+    Measured(Measured<'s>),
     /// No surface at all: a mere boundary of media.
     Null,
 }
@@ -183,6 +197,7 @@ impl Bsdf<'_> {
             Self::Diffuse(model) => model.reflectance *= reflectance,
             Self::Conductor(model) => model.reflectance *= reflectance,
             Self::Plastic(model) => model.reflectance *= reflectance,
+            Self::RoughPlastic(model) => model.reflectance *= reflectance,
             Self::RoughConductor(model) => model.metal.reflectance *= reflectance,
             Self::Dielectric(model) => model.tint(reflectance, transmittance),
             Self::RoughDielectric(model) => model.interface.tint(reflectance, transmittance),
@@ -194,7 +209,8 @@ impl Bsdf<'_> {
                 model.reflectance *= reflectance;
                 model.transmittance *= transmittance;
             }
-            Self::Coated(_) | Self::Measured(_) | Self::Null => {}
+            // Their colours tint them.
+            Self::Coated(_) | Self::Measured(_) | Self::Principled(_) | Self::PrincipledThin(_) | Self::Null => {}
         }
         self
     }
@@ -221,6 +237,9 @@ impl Bsdf<'_> {
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
             | Self::Plastic(_)
+            | Self::RoughPlastic(_)
+            | Self::Principled(_)
+            | Self::PrincipledThin(_)
             | Self::Coated(_)
             | Self::Measured(_)
             | Self::Null => return self,
@@ -238,10 +257,13 @@ impl Bsdf<'_> {
             Self::RoughConductor(model) => model.metal.sides = sides,
             Self::Plastic(model) => model.sides = sides,
             Self::Measured(model) => model.sides = sides,
+            Self::RoughPlastic(model) => model.sides = sides,
             Self::Dielectric(_)
             | Self::RoughDielectric(_)
             | Self::ThinDielectric(_)
             | Self::DiffuseTransmission(_)
+            | Self::Principled(_)
+            | Self::PrincipledThin(_)
             | Self::Coated(_)
             | Self::Null => {}
         }
@@ -257,6 +279,9 @@ impl Bsdf<'_> {
             Self::RoughDielectric(model) => model.eval(wo, wi),
             Self::DiffuseTransmission(model) => model.eval(wo, wi),
             Self::Plastic(model) => model.eval(wo, wi),
+            Self::RoughPlastic(model) => model.eval(wo, wi),
+            Self::Principled(model) => model.eval(wo, wi),
+            Self::PrincipledThin(model) => model.eval(wo, wi),
             Self::Coated(model) => model.eval(wo, wi),
             Self::Measured(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
@@ -272,6 +297,9 @@ impl Bsdf<'_> {
             Self::RoughDielectric(model) => model.pdf(wo, wi),
             Self::DiffuseTransmission(model) => model.pdf(wo, wi),
             Self::Plastic(model) => model.pdf(wo, wi),
+            Self::RoughPlastic(model) => model.pdf(wo, wi),
+            Self::Principled(model) => model.pdf(wo, wi),
+            Self::PrincipledThin(model) => model.pdf(wo, wi),
             Self::Coated(model) => model.pdf(wo, wi),
             Self::Measured(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
@@ -290,6 +318,9 @@ impl Bsdf<'_> {
             Self::ThinDielectric(model) => model.sample(wo, u_lobe),
             Self::DiffuseTransmission(model) => model.sample(wo, u_lobe, u),
             Self::Plastic(model) => model.sample(wo, u_lobe, u),
+            Self::RoughPlastic(model) => model.sample(wo, u_lobe, u),
+            Self::Principled(model) => model.sample(wo, u_lobe, u),
+            Self::PrincipledThin(model) => model.sample(wo, u_lobe, u),
             Self::Coated(model) => model.sample(wo, u_lobe, u),
             Self::Measured(model) => model.sample(wo, u),
             Self::Null => Some(straight_on(wo)),
@@ -314,16 +345,21 @@ impl Bsdf<'_> {
             | Self::Conductor(_)
             | Self::RoughConductor(_)
             | Self::Plastic(_)
+            | Self::RoughPlastic(_)
             | Self::Coated(_)
             | Self::Measured(_) => false,
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),
             Self::DiffuseTransmission(model) => !model.transmittance.is_zero(),
-            Self::Null => true,
+            Self::Principled(model) => model.transmits(),
+            Self::PrincipledThin(_) | Self::Null => true,
         }
     }
 }
+
+/// A vertex of every path holds one: no model may make it bigger for all (keep tables and constants in the scene).
+const _: () = assert!(size_of::<Bsdf>() <= 112);
 
 /// A complex index \[1\] with this reflectance at normal incidence: 1 and `k = 2√r / √(1 − r)`, `r` in [0, 0.9999] (pbrt's
 /// parameter `reflectance`).

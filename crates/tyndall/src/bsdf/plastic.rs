@@ -52,12 +52,16 @@ pub fn internal_reflectance(eta: f32) -> f32 {
     (1.0 - (1.0 - external) / f64::from(eta * eta)) as f32
 }
 
+/// `ρ / (1 − ρ' R) / η²`.
+pub(super) fn under_coat(rho: Lanes, eta: f32, internal: f32, nonlinear: bool) -> Lanes {
+    rho.map(|rho| rho / ((1.0 - if nonlinear { rho } else { 1.0 } * internal) * eta * eta))
+}
+
 impl Plastic {
     /// A base of reflectance `rho` under a coat of index `eta`, whose [`internal_reflectance`] is `internal`; `nonlinear`
     /// as above.
     pub fn new(eta: f32, internal: f32, rho: Lanes, nonlinear: bool) -> Self {
-        let base = rho.map(|rho| rho / ((1.0 - if nonlinear { rho } else { 1.0 } * internal) * eta * eta));
-        Self { eta, base, reflectance: Lanes::ONE, sides: Sides::Both }
+        Self { eta, base: under_coat(rho, eta, internal, nonlinear), reflectance: Lanes::ONE, sides: Sides::Both }
     }
 
     /// `F` at the cosine of `w`.

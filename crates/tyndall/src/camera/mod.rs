@@ -5,6 +5,7 @@
 //! film.
 
 pub mod batch;
+pub mod distant;
 pub mod irradiance_meter;
 pub mod lens;
 pub mod orthographic;
@@ -12,8 +13,10 @@ pub mod perspective;
 pub mod radiance_meter;
 pub mod realistic;
 pub mod spherical;
+pub mod surface;
 
 pub use batch::Batch;
+pub use distant::{Distant, Target};
 pub use irradiance_meter::IrradianceMeter;
 pub use lens::{Element, LensSystem, Stop};
 pub use orthographic::Orthographic;
@@ -21,10 +24,11 @@ pub use perspective::{Perspective, ThinLens};
 pub use radiance_meter::RadianceMeter;
 pub use realistic::Realistic;
 pub use spherical::{Spherical, SphericalMapping};
+pub use surface::Surface;
 
 use crate::{
     film::{Filter, LayerKind},
-    math::{Ray, Transform, Vec2},
+    math::{Ray, Transform, Vec2, Vec3},
     medium::MediumId,
 };
 
@@ -71,6 +75,8 @@ pub enum CameraModel {
     IrradianceMeter(IrradianceMeter),
     /// One ray.
     RadianceMeter(RadianceMeter),
+    /// Parallel rays from outside.
+    Distant(Distant),
     /// Several views side by side.
     Batch(Batch),
 }
@@ -109,6 +115,7 @@ impl View {
             CameraModel::Realistic(camera) => camera.ray(place, lens),
             CameraModel::IrradianceMeter(meter) => return meter.ray(place, lens),
             CameraModel::RadianceMeter(meter) => meter.ray(),
+            CameraModel::Distant(camera) => return camera.ray(self.to_world.vector(Vec3::Z).normalize(), lens),
             CameraModel::Batch(batch) => return batch.ray(place, lens),
         };
         let Ray { origin, dir } = local.ray;

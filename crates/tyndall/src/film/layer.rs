@@ -3,18 +3,27 @@
 //! A layer has four lanes, each with its sum and squared sum over the samples of a pixel; how many there were is known
 //! from the pixel itself. A layer that is defined only where something was hit keeps the weight of hits in its last lane.
 
-use super::standard_error;
+use super::{Bands, standard_error};
 use crate::feature::Feature;
 
 /// What a layer records, and how it is called.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerKind {
     /// What is recorded.
-    pub feature: Feature,
+    pub recorded: Recorded,
     /// Names of its lanes, at most four.
     pub channels: Vec<String>,
     /// What it is the mean of.
     pub average: Average,
+}
+
+/// What a layer records of a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Recorded {
+    /// Something of the first surface.
+    Surface(Feature),
+    /// The light in bands of wavelengths.
+    Light(Bands),
 }
 
 /// Over what a layer is averaged.

@@ -3,12 +3,14 @@
 //! A sample belongs to one pixel (reconstruction filters are sampled, [`filter`]), so pixels are independent, a crop
 //! of the image is the image of the crop, and films of the same scene merge by addition.
 
+pub mod bands;
 pub mod filter;
 pub mod layer;
 pub mod lobed;
 
+pub use bands::Bands;
 pub use filter::Filter;
-pub use layer::{Average, Cell, Layer, LayerKind};
+pub use layer::{Average, Cell, Layer, LayerKind, Recorded};
 pub use lobed::{Kernel, Lobed};
 
 /// A rectangle of pixels, `min ≤ (x, y) < max`.

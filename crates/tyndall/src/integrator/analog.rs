@@ -42,6 +42,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
     let mut inside = within.inside(scene, w);
     let (mut radiance, mut throughput) = (0.0, 1.0);
     let mut history = History::default();
+    let mut last_vertex = ray.origin;
     loop {
         let [sigma_t, sigma_s, source] =
             inside.coefficients().map_or([0.0; 3], |c| [c.sigma_t, c.sigma_s, c.source].map(|l| l.lane(lane)));
@@ -52,12 +53,12 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
         let (vertex, beyond) = match hit {
             None if flight.is_finite() => {
                 tally.collisions += 1;
-                let (id, phase, share) = match &inside {
+                let (id, share) = match &inside {
                     Inside::Vacuum => return radiance,
-                    Inside::Medium { id, phase, .. } => (*id, *phase, 1.0),
+                    Inside::Medium { id, .. } => (*id, 1.0),
                     Inside::Mixture { .. } => match within.choose_part(scene, w, lane, sampler.next_1d()) {
                         None => return radiance,
-                        Some(part) => (part.id, part.phase, part.share.lane(lane) / part.probability.lane(lane)),
+                        Some(part) => (part.id, part.share.lane(lane) / part.probability.lane(lane)),
                     },
                 };
                 let p = ray.at(flight);
@@ -70,14 +71,14 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                     return if source > 0.0 { radiance + throughput * source / (sigma_t - sigma_s) } else { radiance };
                 }
                 throughput *= share; // 0 where nothing scatters, else 1
-                (Vertex::Medium { p, dir: ray.dir, phase }, within)
+                (Vertex::Medium { p, dir: ray.dir, phase: &scene.medium(id).phase }, within)
             }
             None => {
                 let sky = scene
                     .lights
                     .environments
                     .iter()
-                    .map(|id| scene.lights.get(*id).le_from_infinity(ray.dir, w).lane(lane));
+                    .map(|id| scene.lights.get(*id).le_from_infinity(last_vertex, ray.dir, w).lane(lane));
                 return radiance + throughput * sky.sum::<f32>();
             }
             Some(hit) => {
@@ -89,7 +90,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                     continue;
                 }
                 if let Some((_, light)) = scene.light_at(&surface) {
-                    radiance += throughput * light.le(surface.ng, -ray.dir, w).lane(lane);
+                    radiance += throughput * light.le(surface.ng, -ray.dir, || (&surface).into(), w).lane(lane);
                 }
                 let bsdf = skin.bsdf(material, &surface, w, lane).seeded(|| sampler.rng.next_u32());
                 if matches!(bsdf, Bsdf::Null) {
@@ -102,6 +103,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
             }
         };
 
+        last_vertex = vertex.reference().p;
         radiance += throughput * dirac_lights(scene, &vertex, ray.dir, [&within, &beyond], (w, lane), sampler, tally);
         let Some(next) = vertex.sample([sampler.next_1d(), sampler.next_1d(), sampler.next_1d()]) else {
             return radiance;
@@ -141,13 +143,8 @@ fn dirac_lights(
         return 0.0;
     }
     let reference = vertex.reference();
-    let dirac = |l: &&Light| match l {
-        Light::Point(_) | Light::Spot(_) | Light::Distant(_) => true,
-        Light::Area(light) => light.opacity == 0.0,
-        Light::Constant(_) | Light::Map(_) => false,
-    };
     let mut sum = 0.0;
-    for light in scene.lights.lights.iter().filter(dirac) {
+    for light in scene.lights.lights.iter().filter(|light| light.is_hidden()) {
         let u = if matches!(light, Light::Area(_)) { sampler.next_2d() } else { Vec2::ZERO };
         let Some(sample) = light.sample(&reference, u, w) else { continue };
         let f = vertex.eval(sample.dir).0.lane(lane);

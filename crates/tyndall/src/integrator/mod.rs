@@ -6,7 +6,7 @@ pub mod volpath;
 use std::fmt::Debug;
 
 pub use analog::Analog;
-pub use volpath::VolPath;
+pub use volpath::{Counted, VolPath};
 
 use crate::{
     math::Ray,

@@ -20,14 +20,26 @@ use crate::{
 pub struct VolPath {
     /// Scattering events after which a path is cut; `None` (the default) cuts nothing. What is lost is tallied.
     pub max_depth: Option<u32>,
+    /// What counts as a scattering event for that.
+    pub counted: Counted,
     /// Paths below this throughput play roulette and survive with this throughput [1].
     pub roulette: f32,
 }
 
 impl Default for VolPath {
     fn default() -> Self {
-        Self { max_depth: None, roulette: 0.25 }
+        Self { max_depth: None, counted: Counted::Scatterings, roulette: 0.25 }
     }
+}
+
+/// What a limit on the depth of paths counts. (Boundaries without a material never count.)
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Counted {
+    /// Every collision and every surface with a material.
+    #[default]
+    Scatterings,
+    /// Of these, those that turn a path: not a thin pane that it passes straight (as Mitsuba's `volpath` has it).
+    Turns,
 }
 
 /// Whether a path goes on.
@@ -145,7 +157,7 @@ impl Path {
     fn find_environment(&self, scene: &Scene, sink: &mut impl Sink) {
         for id in &scene.lights.environments {
             let light = scene.lights.get(*id);
-            let le = light.le_from_infinity(self.ray.dir, &self.wavelengths);
+            let le = light.le_from_infinity(self.last_vertex.p, self.ray.dir, &self.wavelengths);
             if !le.is_zero() {
                 let weight = self.weights.emission(|| {
                     scene.lights.probability(&self.last_vertex, *id)
@@ -160,7 +172,7 @@ impl Path {
     #[inline]
     fn find_emitter(&self, scene: &Scene, hit: &Interaction, sink: &mut impl Sink) {
         let Some((id, light)) = scene.light_at(hit) else { return };
-        let le = light.le(hit.ng, -self.ray.dir, &self.wavelengths);
+        let le = light.le(hit.ng, -self.ray.dir, || hit.into(), &self.wavelengths);
         if !le.is_zero() {
             let weight = self.weights.emission(|| {
                 scene.lights.probability(&self.last_vertex, id) * light.pdf(&self.last_vertex, hit.p, hit.ng)
@@ -217,10 +229,11 @@ impl Path {
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) -> Status {
-        if settings.max_depth.is_some_and(|limit| self.history.vertices >= limit) {
-            tally.truncated_paths += 1;
-            tally.truncated_throughput += f64::from(self.weights.throughput());
-            return Status::Done;
+        // At the limit a path may still go on through a pane.
+        let at_limit = settings.max_depth.is_some_and(|limit| self.history.depth() >= limit);
+        let free_passage = settings.counted == Counted::Turns && vertex.is_pane();
+        if at_limit && !free_passage {
+            return self.cut(tally);
         }
         // What only reflects is another BSDF for each wavelength, if it disperses: they part before light is sampled.
         if disperses && !vertex.transmits() {
@@ -240,6 +253,10 @@ impl Path {
         let Some(scattered) = vertex.sample(self.sampler.direction(self.history.vertices)) else {
             return Status::Done;
         };
+        let passes = free_passage && scattered.crossed;
+        if at_limit && !passes {
+            return self.cut(tally);
+        }
         if disperses && scattered.eta != 1.0 {
             self.part_wavelengths();
         }
@@ -250,12 +267,20 @@ impl Path {
         }
         self.history.eta_scale *= scattered.eta * scattered.eta;
         self.history.scattered(scattered.specular);
+        self.history.passes = self.history.passes.saturating_add(u16::from(passes));
         self.last_vertex = reference;
         self.ray = scattered.ray;
         if let (true, Vertex::Surface { hit, .. }) = (scattered.crossed, vertex) {
             self.enter(scene, hit);
         }
         Status::Alive
+    }
+
+    /// Ends a path that the user's limit does not let go on.
+    fn cut(&self, tally: &mut Tally) -> Status {
+        tally.truncated_paths += 1;
+        tally.truncated_throughput += f64::from(self.weights.throughput());
+        Status::Done
     }
 
     /// Past a boundary that disperses, each wavelength has its own way: the path goes on with the hero's.

@@ -82,8 +82,8 @@ type Record = u32;
 
 /// A point `x` or `y` of the slides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point<'a> {
-    place: Place<'a>,
+pub(super) struct Point<'s> {
+    place: Place<'s>,
     /// What was around it on the side from which it was reached.
     within: Record,
     /// The medium there.
@@ -93,14 +93,24 @@ pub(super) struct Point<'a> {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Place<'a> {
+enum Place<'s> {
     Eye(Vec3),
-    Surface { hit: Interaction, bsdf: Bsdf<'a>, relief: Option<MaterialId>, from_outside: bool, beyond: Record },
-    Collision { p: Vec3, phase: Phase },
-    Infinity,
+    Surface {
+        hit: Interaction,
+        bsdf: Bsdf<'s>,
+        relief: Option<MaterialId>,
+        from_outside: bool,
+        beyond: Record,
+    },
+    Collision {
+        p: Vec3,
+        phase: &'s Phase,
+    },
+    /// Seen from a point.
+    Infinity(Vec3),
 }
 
-impl<'a> Point<'a> {
+impl<'s> Point<'s> {
     /// Whether there is no material: light goes straight on.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.place, Place::Surface { bsdf: Bsdf::Null, .. })
@@ -126,11 +136,11 @@ impl<'a> Point<'a> {
     }
 
     /// The vertex of the renderer that this point is, seen along `ω`.
-    fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex<'a>> {
+    fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex<'s>> {
         match self.place {
             Place::Surface { hit, bsdf, relief, .. } => Some(Vertex::met(scene, hit, bsdf, -omega, relief)),
             Place::Collision { p, phase } => Some(Vertex::Medium { p, dir: omega, phase }),
-            Place::Eye(_) | Place::Infinity => None,
+            Place::Eye(_) | Place::Infinity(_) => None,
         }
     }
 
@@ -212,11 +222,12 @@ impl<'a> World<'a> {
         self.depth += 1;
         self.tally.rays += 1;
         let (mut ray, within) = self.leave(x, omega);
+        let from = ray.origin;
         let inside = self.inside(within);
         let mut gone = 0.0;
         loop {
             let Some(hit) = self.scene.geometry.intersect(&ray, f32::INFINITY) else {
-                return Some(Point { place: Place::Infinity, within, inside, distance: f32::INFINITY });
+                return Some(Point { place: Place::Infinity(from), within, inside, distance: f32::INFINITY });
             };
             // Taken short by what rounding can add to a collision: it must not be rounded across the surface.
             let distance = gone + hit.t - gamma(8) * (ray.origin.abs().max_element() + hit.t);
@@ -270,7 +281,7 @@ impl<'a> World<'a> {
                 (hit.spawn(omega), if crossed { *beyond } else { x.within })
             }
             Place::Eye(p) | Place::Collision { p, .. } => (Ray::new(*p, omega), x.within),
-            Place::Infinity => (Ray::new(Vec3::INFINITY, omega), x.within),
+            Place::Infinity(_) => (Ray::new(Vec3::INFINITY, omega), x.within),
         }
     }
 
@@ -288,26 +299,27 @@ impl<'a> World<'a> {
     pub(super) fn collision(&mut self, x: &Point, s: f32, omega: Vec3, y: &Point) -> Point<'a> {
         let p = self.leave(x, omega).0.at(s);
         match self.scatterer(y) {
-            Some((id, phase)) if self.scene.may_contain(id, p) => {
+            Some(id) if self.scene.may_contain(id, p) => {
                 self.tally.collisions += 1;
-                Point { place: Place::Collision { p, phase }, within: y.within, inside: y.inside, distance: s }
+                let place = Place::Collision { p, phase: &self.scene.medium(id).phase };
+                Point { place, within: y.within, inside: y.inside, distance: s }
             }
             _ => {
                 self.tally.leaks += 1;
-                Point { place: Place::Infinity, within: y.within, inside: Inside::Vacuum, distance: s }
+                Point { place: Place::Infinity(p), within: y.within, inside: Inside::Vacuum, distance: s }
             }
         }
     }
 
     /// The medium that scatters on the way to `y`: where several share the place, one of them by chance.
-    fn scatterer(&mut self, y: &Point) -> Option<(MediumId, Phase)> {
+    fn scatterer(&mut self, y: &Point) -> Option<MediumId> {
         match y.inside {
             Inside::Vacuum => None,
-            Inside::Medium { id, phase, .. } => Some((id, phase)),
+            Inside::Medium { id, .. } => Some(id),
             Inside::Mixture { .. } => {
                 let u = self.random();
                 let part = self.records[y.within as usize].choose_part(self.scene, &self.wavelengths, self.lane, u)?;
-                Some((part.id, part.phase))
+                Some(part.id)
             }
         }
     }
@@ -315,12 +327,13 @@ impl<'a> World<'a> {
     /// `emittedRadiance(y, ω)`: of the luminaire at `y`, or of the environment at infinity.
     pub(super) fn emitted_radiance(&self, y: &Point, omega: Vec3) -> Radiance {
         let le = match &y.place {
-            Place::Surface { hit, .. } => {
-                self.scene.light_at(hit).map_or(0.0, |(_, l)| l.le(hit.ng, omega, &self.wavelengths).lane(self.lane))
-            }
-            Place::Infinity => {
+            Place::Surface { hit, .. } => self
+                .scene
+                .light_at(hit)
+                .map_or(0.0, |(_, l)| l.le(hit.ng, omega, || hit.into(), &self.wavelengths).lane(self.lane)),
+            Place::Infinity(from) => {
                 let lights = &self.scene.lights;
-                let sky = |id| lights.get(id).le_from_infinity(-omega, &self.wavelengths).lane(self.lane);
+                let sky = |id| lights.get(id).le_from_infinity(*from, -omega, &self.wavelengths).lane(self.lane);
                 lights.environments.iter().copied().map(sky).sum()
             }
             Place::Eye(_) | Place::Collision { .. } => 0.0,

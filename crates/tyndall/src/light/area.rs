@@ -1,15 +1,17 @@
 //! An emitting surface: radiance `L` from every point into the hemisphere of its normal (or both).
 //!
 //! Points are drawn uniformly in solid angle where a closed form exists (spheres by their cone; rectangles, Ureña et al.
-//! 2013), else uniformly in area, with density `d² / (A |cos θ|)` per steradian.
+//! 2013), else uniformly in area, or nearly so, with density `d² p_A / |cos θ|` per steradian.
 
 use std::f32::consts::PI;
 
-use super::{LightSample, Reference, Revolved, Target};
+use super::{LightSample, Pattern, Reference, Revolved, Target};
 use crate::{
     math::{Bounds, Frame, Vec2, Vec3, rounding::gamma},
     sampling::{spherical_rectangle::SphericalRectangle, warp},
+    shape::Patch,
     spectrum::{Lanes, Spectrum, Wavelengths},
+    texture::TexturePoint,
 };
 
 /// An emitting piece of surface.
@@ -26,6 +28,8 @@ pub struct AreaLight {
     /// How much of the surface is there \[1\]: the rest are holes. Of a surface that is not there at all the light remains,
     /// and only light sampling finds it (pbrt).
     pub opacity: f32,
+    /// What varies over it, if anything does.
+    pub pattern: Option<Box<Pattern>>,
 }
 
 /// The shapes that can emit.
@@ -73,6 +77,8 @@ pub enum EmitterShape {
         /// Radius of the hole [length].
         inner: f32,
     },
+    /// A bilinear patch.
+    Patch(Patch),
     /// A cylinder, a part of a disk or of a sphere, an ellipsoid.
     Revolved(Revolved),
 }
@@ -93,7 +99,16 @@ impl EmitterShape {
             Self::Parallelogram { e1, e2, .. } => e1.cross(e2).length(),
             Self::Sphere { radius, .. } => 4.0 * PI * radius * radius,
             Self::Disk { radius, inner, .. } => PI * (radius * radius - inner * inner),
+            Self::Patch(patch) => patch.area(),
             Self::Revolved(revolved) => revolved.area(),
+        }
+    }
+
+    /// As [`Self::area`], good for a guess: quickly.
+    fn rough_area(&self) -> f32 {
+        match self {
+            Self::Patch(patch) => patch.rough_area(),
+            _ => self.area(),
         }
     }
 
@@ -112,7 +127,7 @@ impl EmitterShape {
         match *self {
             Self::Triangle { ng, .. } | Self::Parallelogram { ng, .. } | Self::Disk { ng, .. } => Some(ng),
             Self::Revolved(revolved) => revolved.normal(),
-            Self::Sphere { .. } => None,
+            Self::Sphere { .. } | Self::Patch(_) => None,
         }
     }
 
@@ -126,17 +141,47 @@ impl EmitterShape {
                 let reach = (Vec3::ONE - ng * ng).max(Vec3::ZERO).map(f32::sqrt) * radius;
                 Bounds { min: centre - reach, max: centre + reach }
             }
+            Self::Patch(patch) => Bounds::of(patch.corners),
             Self::Revolved(revolved) => revolved.bounds(),
         }
     }
 
     /// Which side of a flat emitter a point is on, as a height over its plane; `None` for a curved one.
-    fn height(&self, p: Vec3) -> Option<f32> {
+    pub(crate) fn height(&self, p: Vec3) -> Option<f32> {
         match *self {
             Self::Triangle { a, ng, .. } | Self::Parallelogram { a, ng, .. } => Some((p - a).dot(ng)),
             Self::Disk { centre, ng, .. } => Some((p - centre).dot(ng)),
             Self::Revolved(revolved) => revolved.normal().map(|ng| (p - revolved.centre()).dot(ng)),
-            Self::Sphere { .. } => None,
+            Self::Sphere { .. } | Self::Patch(_) => None,
+        }
+    }
+
+    /// Weights of `e1` and `e2` at a point of the plane of a triangle or a parallelogram [1].
+    pub(crate) fn weights(&self, p: Vec3) -> [f32; 2] {
+        match *self {
+            Self::Triangle { a, e1, e2, .. } | Self::Parallelogram { a, e1, e2, .. } => {
+                let n = e1.as_dvec3().cross(e2.as_dvec3());
+                let from = (p - a).as_dvec3();
+                let square = n.length_squared();
+                [from.cross(e2.as_dvec3()), e1.as_dvec3().cross(from)].map(|v| (v.dot(n) / square) as f32)
+            }
+            Self::Sphere { .. } | Self::Disk { .. } | Self::Patch(_) | Self::Revolved(_) => [0.0; 2],
+        }
+    }
+
+    /// Whether a point of the plane of a flat emitter lies on it.
+    pub(crate) fn holds(&self, p: Vec3) -> bool {
+        match *self {
+            Self::Triangle { .. } => {
+                let [b1, b2] = self.weights(p);
+                b1 >= 0.0 && b2 >= 0.0 && b1 + b2 <= 1.0
+            }
+            Self::Parallelogram { .. } => self.weights(p).iter().all(|b| (0.0..=1.0).contains(b)),
+            Self::Disk { centre, radius, inner, .. } => {
+                let d2 = centre.distance_squared(p);
+                d2 <= radius * radius && d2 >= inner * inner
+            }
+            Self::Sphere { .. } | Self::Patch(_) | Self::Revolved(_) => false,
         }
     }
 
@@ -145,6 +190,7 @@ impl EmitterShape {
             Self::Triangle { a, e1, e2, .. } => a + (e1 + e2) / 3.0,
             Self::Parallelogram { a, e1, e2, .. } => a + (e1 + e2) * 0.5,
             Self::Sphere { centre, .. } | Self::Disk { centre, .. } => centre,
+            Self::Patch(patch) => patch.corners.iter().sum::<Vec3>() * 0.25,
             Self::Revolved(revolved) => revolved.centre(),
         }
     }
@@ -170,13 +216,18 @@ impl EmitterShape {
                 let f = Frame::around(ng);
                 flat(centre, f.s * (d.x * stretch * radius), f.t * (d.y * stretch * radius), ng)
             }
+            Self::Patch(patch) => {
+                let (p, ng, error) = patch.sample_area(u);
+                Point { p, ng, error }
+            }
             Self::Revolved(revolved) => revolved.sample(u),
         }
     }
 
-    /// Density of [`Self::sample_area`] at a point [1/length²].
-    pub(crate) fn pdf_area(&self, p: Vec3) -> f32 {
+    /// Density of [`Self::sample_area`] at a point with unit normal `ng` [1/length²].
+    pub(crate) fn pdf_area(&self, p: Vec3, ng: Vec3) -> f32 {
         match self {
+            Self::Patch(patch) => patch.pdf_area(p, ng),
             Self::Revolved(revolved) => revolved.pdf(p),
             _ => 1.0 / self.area(),
         }
@@ -194,10 +245,17 @@ fn sphere_point(centre: Vec3, radius: f32, n: Vec3, inward: bool) -> Point {
 }
 
 impl AreaLight {
-    /// Radiance leaving a point with unit normal `ng` towards `dir` [W·m⁻²·sr⁻¹].
+    /// Radiance leaving a point with unit normal `ng` towards `dir` [W·m⁻²·sr⁻¹]; `at` is the point as textures see it.
     #[inline]
-    pub fn le(&self, ng: Vec3, dir: Vec3, wavelengths: &Wavelengths) -> Lanes {
-        if self.two_sided || ng.dot(dir) > 0.0 { self.radiance.eval(wavelengths) } else { Lanes::ZERO }
+    pub fn le(&self, ng: Vec3, dir: Vec3, at: impl FnOnce() -> TexturePoint, wavelengths: &Wavelengths) -> Lanes {
+        if !self.two_sided && ng.dot(dir) <= 0.0 {
+            return Lanes::ZERO;
+        }
+        let radiance = self.radiance.eval(wavelengths);
+        match &self.pattern {
+            None => radiance,
+            Some(pattern) => radiance * pattern.factor(&at(), wavelengths),
+        }
     }
 
     /// A direction towards the emitter.
@@ -210,15 +268,30 @@ impl AreaLight {
         let to_light = point.p - from.p;
         let d2 = to_light.length_squared();
         let dir = to_light / d2.sqrt();
-        let shares = if self.opacity == 0.0 { 1.0 } else { self.opacity };
-        let li = self.le(point.ng, -dir, wavelengths) * shares;
-        (pdf > 0.0 && pdf.is_finite() && d2 > 0.0 && !li.is_zero()).then_some(LightSample {
+        if !(pdf > 0.0 && pdf.is_finite() && d2 > 0.0) || (!self.two_sided && point.ng.dot(dir) >= 0.0) {
+            return None;
+        }
+        let li = self.radiance.eval(wavelengths) * self.share(&point, wavelengths);
+        (!li.is_zero()).then_some(LightSample {
             dir,
             li,
             pdf,
             dirac: self.opacity == 0.0,
             target: Target::Surface { p: point.p, error: point.error, ng: point.ng },
         })
+    }
+
+    /// The share of the radiance that light sampling takes at a point: as much of it as there is surface.
+    #[inline]
+    fn share(&self, point: &Point, wavelengths: &Wavelengths) -> Lanes {
+        let there = if self.opacity == 0.0 { 1.0 } else { self.opacity };
+        match &self.pattern {
+            None => Lanes::splat(there),
+            Some(pattern) => {
+                let at = pattern.texture_point(&self.shape, point.p, point.ng);
+                pattern.factor(&at, wavelengths) * (there * pattern.opacity(&at))
+            }
+        }
     }
 
     /// A point and its density [1/sr].
@@ -240,7 +313,7 @@ impl AreaLight {
             _ => {}
         }
         let point = self.shape.sample_area(u);
-        let pdf = area_to_solid_angle(from.p, point.p, point.ng, self.shape.pdf_area(point.p));
+        let pdf = area_to_solid_angle(from.p, point.p, point.ng, self.shape.pdf_area(point.p, point.ng));
         (point, pdf)
     }
 
@@ -260,13 +333,13 @@ impl AreaLight {
             }
             _ => {}
         }
-        area_to_solid_angle(from.p, p, ng, self.shape.pdf_area(p))
+        area_to_solid_angle(from.p, p, ng, self.shape.pdf_area(p, ng))
     }
 
     /// A guess at the irradiance made at `p` [W·m⁻²]: zero only behind a one-sided flat emitter.
     #[inline]
     pub fn importance(&self, p: Vec3) -> f32 {
-        let area = self.shape.area();
+        let area = self.shape.rough_area();
         let d2 = self.shape.centre().distance_squared(p).max(0.25 * area);
         let cosine = match self.shape.height(p) {
             Some(h) if h <= 0.0 && !self.two_sided => return 0.0,
@@ -306,84 +379,13 @@ fn is_rectangle(e1: Vec3, e2: Vec3) -> bool {
     e1.dot(e2).abs() <= 1e-5 * (e1.length() * e2.length())
 }
 
-/// A density per area, seen from a point.
-fn area_to_solid_angle(from: Vec3, p: Vec3, ng: Vec3, pdf: f32) -> f32 {
+/// A density by area [1/length²], by solid angle [1/sr].
+fn area_to_solid_angle(from: Vec3, p: Vec3, ng: Vec3, pdf_area: f32) -> f32 {
     let to_light = p - from;
     let d2 = to_light.length_squared();
     let cosine = (to_light.dot(ng)).abs() / d2.sqrt();
-    if cosine > 0.0 { d2 * pdf / cosine } else { 0.0 }
+    if cosine > 0.0 { pdf_area * d2 / cosine } else { 0.0 }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn light(shape: EmitterShape) -> AreaLight {
-        AreaLight { shape, radiance: Spectrum::constant(1.0), luminance: 1.0, two_sided: false, opacity: 1.0 }
-    }
-
-    /// Irradiance of a uniform emitter on a plane that faces it, over π: the form factor from a point.
-    fn irradiance_over_pi(light: &AreaLight, n: u32) -> f64 {
-        let from = Reference { p: Vec3::ZERO, normal: Some(Vec3::Z) };
-        let mut sum = 0.0;
-        for i in 0..n {
-            for j in 0..n {
-                let u = Vec2::new((i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32);
-                if let Some(s) = light.sample(&from, u, &Wavelengths::Rgb) {
-                    sum += f64::from(s.li.lane(0) * s.dir.z.max(0.0) / s.pdf) / std::f64::consts::PI;
-                }
-            }
-        }
-        sum / f64::from(n * n)
-    }
-
-    /// `surface_ground_truths.csv`: unit square on the axis at height 1; sphere of r = 0.5 at d = 2: (r/d)²;
-    /// a disk of radius R at height h: R²/(R² + h²); a ring is the difference of two.
-    #[test]
-    fn uniform_emitters_give_the_irradiance_of_their_form_factors() {
-        let down = -Vec3::Z;
-        let square = EmitterShape::Parallelogram { a: Vec3::new(-0.5, -0.5, 1.0), e1: Vec3::Y, e2: Vec3::X, ng: down };
-        let halves = [
-            EmitterShape::Triangle { a: Vec3::new(-0.5, -0.5, 1.0), e1: Vec3::Y, e2: Vec3::X, ng: down },
-            EmitterShape::Triangle { a: Vec3::new(0.5, 0.5, 1.0), e1: -Vec3::Y, e2: -Vec3::X, ng: down },
-        ];
-        let sphere = EmitterShape::Sphere { centre: 2.0 * Vec3::Z, radius: 0.5, inward: false };
-        let ring = EmitterShape::Disk { centre: 2.0 * Vec3::Z, ng: down, radius: 1.0, inner: 0.5 };
-        let check = |name: &str, value: f64, expected: f64| {
-            assert!((value / expected - 1.0).abs() < 2e-4, "{name}: {value}, expected {expected}");
-        };
-        check("square", irradiance_over_pi(&light(square), 200), 0.239_456_470_460_774);
-        let both = halves.iter().map(|t| irradiance_over_pi(&light(*t), 400)).sum();
-        check("triangles", both, 0.239_456_470_460_774);
-        check("sphere", irradiance_over_pi(&light(sphere), 200), 0.0625);
-        check("ring", irradiance_over_pi(&light(ring), 400), 1.0 / 5.0 - 0.25 / 4.25);
-    }
-
-    #[test]
-    fn the_density_of_a_sample_is_the_density_of_its_point() {
-        let shapes = [
-            EmitterShape::Parallelogram { a: Vec3::new(-0.5, 0.2, 1.0), e1: Vec3::Y, e2: Vec3::X, ng: -Vec3::Z },
-            EmitterShape::Sphere { centre: Vec3::new(1.0, 1.0, 2.0), radius: 0.5, inward: false },
-            EmitterShape::Disk { centre: Vec3::new(0.3, 0.0, 2.0), ng: -Vec3::Z, radius: 1.0, inner: 0.0 },
-        ];
-        let from = Reference { p: Vec3::ZERO, normal: None };
-        for shape in shapes {
-            let light = light(shape);
-            for i in 0..100 {
-                let u = Vec2::new((i as f32 * 0.618) % 1.0, (i as f32 * 0.414) % 1.0);
-                let s = light.sample(&from, u, &Wavelengths::Rgb).unwrap();
-                let Target::Surface { p, ng, .. } = s.target else { panic!() };
-                let pdf = light.pdf(&from, p, ng);
-                assert!((pdf / s.pdf - 1.0).abs() < 1e-3, "{shape:?}: {pdf} {}", s.pdf);
-            }
-        }
-    }
-
-    #[test]
-    fn nothing_shines_behind_a_one_sided_emitter() {
-        let disk = light(EmitterShape::Disk { centre: Vec3::Z, ng: Vec3::Z, radius: 1.0, inner: 0.0 });
-        let from = Reference { p: Vec3::ZERO, normal: None };
-        assert!(disk.sample(&from, Vec2::new(0.3, 0.4), &Wavelengths::Rgb).is_none());
-        assert_eq!(disk.importance(from.p), 0.0);
-    }
-}
+mod tests;

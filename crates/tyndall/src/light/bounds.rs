@@ -5,7 +5,7 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
-use super::Light;
+use super::{EmitterShape, Goniometric, Light};
 use crate::math::{Bounds, Vec3};
 
 /// Bounds on a group of lights.
@@ -34,13 +34,26 @@ impl LightBounds {
         Some(match light {
             Light::Area(l) => {
                 let intensity = l.luminance * l.shape.projected_area();
-                match l.shape.normal() {
-                    // A triangle without area has no normal.
-                    Some(axis) if axis != Vec3::ZERO => {
-                        Self { axis, theta_o: 0.0, intensity, two_sided: l.two_sided, ..everywhere }
-                    }
-                    _ => Self { intensity, ..everywhere },
+                match normals(&l.shape) {
+                    Some((axis, theta_o)) => Self { axis, theta_o, intensity, two_sided: l.two_sided, ..everywhere },
+                    None => Self { intensity, ..everywhere },
                 }
+            }
+            Light::Beam(l) => match normals(&l.shape) {
+                Some((axis, theta_o)) => {
+                    let intensity = l.luminance * l.shape.area();
+                    Self { axis, theta_o, theta_e: 0.0, intensity, ..everywhere }
+                }
+                None => return None,
+            },
+            Light::Goniometric(l) => {
+                let mean = Goniometric::mean_share(&l.shares) as f32;
+                Self { intensity: l.luminance * mean, ..everywhere }
+            }
+            Light::Projector(l) => {
+                let axis = l.slide.to_world.matrix.z_axis.truncate();
+                let theta_e = l.cos_corner().acos();
+                Self { axis, theta_o: 0.0, theta_e, intensity: l.luminance, ..everywhere }
             }
             Light::Point(l) => Self { intensity: l.luminance, ..everywhere },
             Light::Spot(l) => {
@@ -48,7 +61,7 @@ impl LightBounds {
                 let theta_e = (l.cos_outer.acos() - theta_o).max(0.0);
                 Self { axis: l.axis, theta_o, theta_e, intensity: l.luminance, ..everywhere }
             }
-            Light::Distant(_) | Light::Constant(_) | Light::Map(_) => return None,
+            Light::Distant(_) | Light::Constant(_) | Light::Map(_) | Light::Portal(_) => return None,
         })
     }
 
@@ -78,6 +91,15 @@ impl LightBounds {
         let directions = 2.0 * PI * (1.0 - o.cos()) + FRAC_PI_2 * rim;
         self.intensity * self.bounds.extent().length_squared() * directions.max(0.0)
     }
+}
+
+/// A cone that holds the normals of a surface: its axis and its half angle. `None` for a surface that faces all sides, and for
+/// a triangle without area, which has no normal.
+fn normals(shape: &EmitterShape) -> Option<(Vec3, f32)> {
+    if let EmitterShape::Patch(patch) = shape {
+        return patch.normals();
+    }
+    shape.normal().filter(|axis| *axis != Vec3::ZERO).map(|axis| (axis, 0.0))
 }
 
 /// The narrowest cone around two.

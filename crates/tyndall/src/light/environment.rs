@@ -2,11 +2,11 @@
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
-use super::{LightSample, Reference, Target};
+use super::{LightSample, Reference, SkyError, SkyImage, Target};
 use crate::{
     math::{Frame, Transform, Vec2, Vec3, fast::sin_cos_turn},
     sampling::{piecewise2d::Piecewise2d, warp},
-    spectrum::{Lanes, Spectrum, Wavelengths},
+    spectrum::{Lanes, Spectrum, Wavelengths, srgb},
 };
 
 /// The same radiance from every direction.
@@ -48,11 +48,42 @@ impl ConstantEnvironment {
 /// How directions lie on an environment image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Projection {
-    /// Latitude and longitude, 2:1, +y up in the map's own space (Mitsuba 3): `u = atan2(x, −z)/2π` modulo 1,
-    /// `v = θ/π` from +y.
+    /// Latitude and longitude, 2:1, +y up in the map's own space: `u = atan2(x, −z)/2π` modulo 1, `v = θ/π` from +y. The
+    /// values stand at the middles of the columns, the first row at the upper pole and the last at the lower; radiance is
+    /// linear between them (Mitsuba 3).
     LatLong,
-    /// Equal-area octahedral map of the sphere on a square (Clarberg 2008), +z up in the map's own space (pbrt-v4).
+    /// Equal-area octahedral map of the sphere on a square (Clarberg 2008), +z up in the map's own space; radiance is
+    /// constant over a pixel (pbrt-v4).
     EqualArea,
+}
+
+impl Projection {
+    /// The direction of a place on the image, in the map's own space.
+    pub fn direction(self, uv: Vec2) -> Vec3 {
+        self.direction_and_jacobian(uv).0
+    }
+
+    /// Columns and rows of the cells over which an image of this size is sampled.
+    fn cells(self, width: u32, height: u32) -> (u32, u32) {
+        match self {
+            Self::LatLong => (width, (height - 1).max(1)),
+            Self::EqualArea => (width, height),
+        }
+    }
+
+    /// The same, and the solid angle of a unit of the image's area [sr].
+    fn direction_and_jacobian(self, uv: Vec2) -> (Vec3, f32) {
+        match self {
+            Self::LatLong => {
+                let (sin_theta, cos_theta) = sin_cos_turn(0.5 * uv.y);
+                let (sin_phi, cos_phi) = sin_cos_turn(uv.x);
+                // u = 0 looks along −z.
+                let d = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
+                (d, 2.0 * PI * PI * sin_theta)
+            }
+            Self::EqualArea => (equal_area_sphere(uv), 4.0 * PI),
+        }
+    }
 }
 
 /// An image of the sky.
@@ -62,15 +93,9 @@ pub struct EnvironmentMap {
     pub to_world: Transform,
     /// How directions lie on the image.
     pub projection: Projection,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Linear-sRGB radiance by pixel, row by row [W·m⁻²·sr⁻¹].
-    pub pixels: Vec<[f32; 3]>,
-    /// Radiance of unit red, green and blue: any pixel is a sum of them.
-    primaries: [Spectrum; 3],
-    /// Pixels in proportion to luminance and solid angle.
+    /// Radiance by pixel.
+    pub image: SkyImage,
+    /// Cells in proportion to luminance and solid angle: pixels, or what lies between the values of four.
     pub distribution: Piecewise2d,
     /// Mean luminance over the sphere, for the choice of lights [W·m⁻²·sr⁻¹].
     pub mean_luminance: f32,
@@ -80,7 +105,7 @@ impl EnvironmentMap {
     /// From linear-sRGB pixels, row by row, scaled by `scale`.
     ///
     /// # Errors
-    /// The image is empty, or has values that are negative or not finite.
+    /// The image is empty or black, or has values that are negative or not finite.
     pub fn new(
         to_world: Transform,
         projection: Projection,
@@ -88,32 +113,30 @@ impl EnvironmentMap {
         height: u32,
         pixels: &[[f32; 3]],
         scale: f32,
-    ) -> Result<Self, EnvironmentError> {
-        if width == 0 || height == 0 || pixels.len() != width as usize * height as usize {
-            return Err(EnvironmentError::Empty);
-        }
-        if let Some(i) = pixels.iter().position(|p| p.iter().any(|v| !v.is_finite() || *v < 0.0)) {
-            return Err(EnvironmentError::BadPixel { column: i as u32 % width, row: i as u32 / width });
-        }
-        let pixels: Vec<[f32; 3]> = pixels.iter().map(|p| p.map(|v| v * scale)).collect();
-        let luminance = |p: &[f32; 3]| 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
-        let share = |i: usize| match projection {
-            Projection::LatLong => (PI * ((i as u32 / width) as f32 + 0.5) / height as f32).sin(),
+    ) -> Result<Self, SkyError> {
+        let image = SkyImage::new(width, height, pixels, scale)?;
+        let (columns, rows) = projection.cells(width, height);
+        let cells: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
+        let share = |&(_, y): &(u32, u32)| match projection {
+            Projection::LatLong => (PI * (y as f32 + 0.5) / rows as f32).sin(),
             Projection::EqualArea => 1.0,
         };
-        let weights: Vec<f32> = pixels.iter().enumerate().map(|(i, p)| luminance(p) * share(i)).collect();
-        let total_share: f64 = (0..weights.len()).map(|i| f64::from(share(i))).sum();
+        let middle = |&(x, y): &(u32, u32)| match projection {
+            Projection::LatLong => image.between(Vec2::new(x as f32 + 0.5, y as f32 + 0.5)),
+            Projection::EqualArea => image.pixels[y as usize * width as usize + x as usize],
+        };
+        let weights: Vec<f32> = cells.iter().map(|cell| srgb::luminance(middle(cell)) * share(cell)).collect();
+        let total_share: f64 = cells.iter().map(|cell| f64::from(share(cell))).sum();
         let mean_luminance = (weights.iter().map(|w| f64::from(*w)).sum::<f64>() / total_share) as f32;
-        let distribution = Piecewise2d::new(&weights, width as usize).ok_or(EnvironmentError::Black)?;
-        let primaries = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Spectrum::illuminant_rgb);
-        Ok(Self { to_world, projection, width, height, pixels, primaries, distribution, mean_luminance })
+        let distribution = Piecewise2d::new(&weights, columns as usize).ok_or(SkyError::Black)?;
+        Ok(Self { to_world, projection, image, distribution, mean_luminance })
     }
 
     /// A bright direction.
     #[inline]
     pub fn sample(&self, u: Vec2, wavelengths: &Wavelengths) -> Option<LightSample> {
         let (uv, pdf_uv) = self.distribution.sample(u);
-        let (local, jacobian) = self.direction(uv);
+        let (local, jacobian) = self.direction_and_jacobian(uv);
         let pdf = pdf_uv / jacobian;
         (pdf > 0.0 && pdf.is_finite()).then(|| LightSample {
             dir: self.to_world.vector(local).normalize(),
@@ -128,69 +151,52 @@ impl EnvironmentMap {
     #[inline]
     pub fn pdf(&self, dir: Vec3) -> f32 {
         let uv = self.coordinates(dir);
-        let (_, jacobian) = self.direction(uv);
+        let (_, jacobian) = self.direction_and_jacobian(uv);
         if jacobian > 0.0 { self.distribution.pdf(uv) / jacobian } else { 0.0 }
     }
 
-    /// Radiance out of a direction [W·m⁻²·sr⁻¹], constant over a pixel.
+    /// Radiance out of a direction [W·m⁻²·sr⁻¹].
     #[inline]
     pub fn le(&self, dir: Vec3, wavelengths: &Wavelengths) -> Lanes {
         self.radiance(self.coordinates(dir), wavelengths)
     }
 
     fn radiance(&self, uv: Vec2, wavelengths: &Wavelengths) -> Lanes {
-        let x = ((uv.x * self.width as f32) as u32).min(self.width - 1);
-        let y = ((uv.y * self.height as f32) as u32).min(self.height - 1);
-        let rgb = self.pixels[(y * self.width + x) as usize];
-        match wavelengths {
-            Wavelengths::Rgb => Lanes::rgb(rgb[0], rgb[1], rgb[2]),
-            _ => (0..3).fold(Lanes::ZERO, |sum, c| sum + self.primaries[c].eval(wavelengths) * rgb[c]),
+        match self.projection {
+            Projection::LatLong => {
+                let (columns, rows) = self.projection.cells(self.image.width, self.image.height);
+                let rgb = self.image.between(Vec2::new(uv.x * columns as f32, uv.y * rows as f32));
+                self.image.light(rgb, wavelengths)
+            }
+            Projection::EqualArea => self.image.radiance(uv, wavelengths),
         }
     }
 
+    /// How far, in u, the first cell of the distribution is from the edge of the image.
+    fn shift(&self) -> f32 {
+        match self.projection {
+            Projection::LatLong => 0.5 / self.image.width as f32,
+            Projection::EqualArea => 0.0,
+        }
+    }
+
+    /// The direction of a place among the cells, in the map's own space, and the solid angle of a unit of their area [sr].
+    fn direction_and_jacobian(&self, uv: Vec2) -> (Vec3, f32) {
+        let u = uv.x + self.shift();
+        self.projection.direction_and_jacobian(Vec2::new(if u > 1.0 { u - 1.0 } else { u }, uv.y))
+    }
+
+    /// The place of a direction among the cells.
     fn coordinates(&self, dir: Vec3) -> Vec2 {
         let d = self.to_world.inverse.transform_vector3(dir).normalize();
         match self.projection {
             Projection::LatLong => {
-                let u = d.x.atan2(-d.z) / (2.0 * PI);
+                let u = d.x.atan2(-d.z) / (2.0 * PI) - self.shift();
                 Vec2::new(u - u.floor(), d.y.clamp(-1.0, 1.0).acos() * FRAC_1_PI)
             }
             Projection::EqualArea => equal_area_square(d),
         }
     }
-
-    /// Direction of a place on the image, and the solid angle of a unit of its area [sr].
-    fn direction(&self, uv: Vec2) -> (Vec3, f32) {
-        match self.projection {
-            Projection::LatLong => {
-                let (sin_theta, cos_theta) = sin_cos_turn(0.5 * uv.y);
-                let (sin_phi, cos_phi) = sin_cos_turn(uv.x);
-                // u = 0 looks along −z.
-                let d = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
-                (d, 2.0 * PI * PI * sin_theta)
-            }
-            Projection::EqualArea => (equal_area_sphere(uv), 4.0 * PI),
-        }
-    }
-}
-
-/// An environment image that cannot be used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum EnvironmentError {
-    /// No pixels.
-    #[error("the environment image has no pixels")]
-    Empty,
-    /// No light anywhere.
-    #[error("the environment image is black: leave the light out")]
-    Black,
-    /// A value that is no radiance.
-    #[error("the environment image has a negative or non-finite value at column {column}, row {row}")]
-    BadPixel {
-        /// Column.
-        column: u32,
-        /// Row.
-        row: u32,
-    },
 }
 
 /// Square to sphere, equal areas to equal solid angles (Clarberg 2008).
@@ -206,7 +212,7 @@ pub(crate) fn equal_area_sphere(uv: Vec2) -> Vec3 {
 }
 
 /// Sphere to square, the inverse of [`equal_area_sphere`].
-fn equal_area_square(d: Vec3) -> Vec2 {
+pub(crate) fn equal_area_square(d: Vec3) -> Vec2 {
     let (x, y) = (d.x.abs(), d.y.abs());
     let r = (1.0 - d.z.abs()).max(0.0).sqrt();
     let phi = y.atan2(x) * (2.0 * FRAC_1_PI);
@@ -235,7 +241,7 @@ mod tests {
             for i in 1..50 {
                 for j in 1..50 {
                     let uv = Vec2::new(i as f32 / 50.0, j as f32 / 50.0);
-                    let (d, _) = map.direction(uv);
+                    let (d, _) = map.direction_and_jacobian(uv);
                     assert!((d.length() - 1.0).abs() < 1e-5);
                     assert!((map.coordinates(d) - uv).length() < 2e-4, "{projection:?} {uv} {}", map.coordinates(d));
                 }
@@ -258,5 +264,28 @@ mod tests {
             }
             assert!((sum - 1.0).abs() < 2e-3, "{projection:?}: {sum}");
         }
+    }
+
+    /// Mitsuba 3.9.1 on an image that is lit in one row or one column only: full at θ = 2π/7 and φ = 2π · 4.5/16, gone a row
+    /// or a column away.
+    #[test]
+    fn values_stand_where_mitsuba_has_them() {
+        let lit = |pixel: fn(u32, u32) -> bool| {
+            let at = |i: u32| [if pixel(i % 16, i / 16) { 1.0 } else { 0.0 }; 3];
+            let pixels: Vec<[f32; 3]> = (0..16 * 8).map(at).collect();
+            EnvironmentMap::new(Transform::IDENTITY, Projection::LatLong, 16, 8, &pixels, 1.0).unwrap()
+        };
+        let seen = |map: &EnvironmentMap, u: f32, v: f32| {
+            map.le(Projection::LatLong.direction(Vec2::new(u, v)), &Wavelengths::Rgb).lane(0)
+        };
+        let (row, column) = (lit(|_, y| y == 2), lit(|x, _| x == 4));
+        for (v, value) in [(0.2, 0.4), (0.2375, 0.6625), (0.3, 0.9), (0.375, 0.375), (0.44, 0.0)] {
+            assert!((seen(&row, 0.3, v) - value).abs() < 1e-4, "{v}: {}", seen(&row, 0.3, v));
+        }
+        for (u, value) in [(0.21, 0.0), (0.225, 0.1), (0.28125, 1.0), (0.325, 0.3), (0.35, 0.0)] {
+            assert!((seen(&column, u, 0.5) - value).abs() < 1e-4, "{u}: {}", seen(&column, u, 0.5));
+        }
+        let rim = lit(|x, _| x == 15);
+        assert!((seen(&rim, 0.0, 0.5) - 0.5).abs() < 1e-4, "half way between the last column and the first");
     }
 }

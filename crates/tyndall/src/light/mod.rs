@@ -1,21 +1,37 @@
 //! Where light comes from: emitting surfaces, points, spots, distant suns and environments.
 
 pub mod area;
+pub mod beam;
 pub mod bounds;
 pub mod choose;
 pub mod distant;
 pub mod environment;
+pub mod goniometric;
 mod hierarchy;
+mod patch;
+pub mod pattern;
 pub mod point;
+pub mod portal;
+pub mod projector;
 pub mod revolved;
+pub mod sky;
+pub mod slide;
 pub mod spot;
 
+pub(crate) use area::Point;
 pub use area::{AreaLight, EmitterShape};
+pub use beam::Beam;
 pub use choose::LightTable;
 pub use distant::Distant;
 pub use environment::{ConstantEnvironment, EnvironmentMap, Projection};
+pub use goniometric::Goniometric;
+pub use pattern::{Coordinates, Pattern};
 pub use point::PointLight;
+pub use portal::{Portal, PortalError};
+pub use projector::{Even, Projector};
 pub use revolved::Revolved;
+pub use sky::{SkyError, SkyImage};
+pub use slide::Slide;
 pub use spot::{Falloff, SpotLight};
 
 use crate::{
@@ -84,6 +100,14 @@ pub enum Light {
     Constant(ConstantEnvironment),
     /// A sky with an image.
     Map(Box<EnvironmentMap>),
+    /// A sky behind an opening.
+    Portal(Box<Portal>),
+    /// A point that was measured in all directions.
+    Goniometric(Box<Goniometric>),
+    /// A point that shines through a picture.
+    Projector(Box<Projector>),
+    /// A flat surface that shines straight ahead.
+    Beam(Beam),
 }
 
 impl Light {
@@ -97,6 +121,10 @@ impl Light {
             Self::Distant(l) => Some(l.sample(wavelengths)),
             Self::Constant(l) => Some(l.sample(from, u, wavelengths)),
             Self::Map(l) => l.sample(u, wavelengths),
+            Self::Portal(l) => l.sample(from.p, u, wavelengths),
+            Self::Goniometric(l) => l.sample(from, wavelengths),
+            Self::Projector(l) => l.sample(from, wavelengths),
+            Self::Beam(l) => l.sample(from, wavelengths),
         }
     }
 
@@ -115,23 +143,41 @@ impl Light {
         match self {
             Self::Constant(l) => l.pdf(from, dir),
             Self::Map(l) => l.pdf(dir),
+            Self::Portal(l) => l.pdf(from.p, dir),
             _ => 0.0,
         }
     }
 
-    /// Radiance that comes from infinity out of direction `dir` [W·m⁻²·sr⁻¹].
+    /// Radiance that comes from infinity out of direction `dir` to the point `from`, the last vertex of a path
+    /// [W·m⁻²·sr⁻¹].
     #[inline]
-    pub fn le_from_infinity(&self, dir: Vec3, wavelengths: &Wavelengths) -> Lanes {
+    pub fn le_from_infinity(&self, from: Vec3, dir: Vec3, wavelengths: &Wavelengths) -> Lanes {
         match self {
             Self::Constant(l) => l.radiance.eval(wavelengths),
             Self::Map(l) => l.le(dir, wavelengths),
+            Self::Portal(l) => l.le(from, dir, wavelengths),
             _ => Lanes::ZERO,
         }
     }
 
     /// Whether the light surrounds the scene, so that escaping rays find it.
     pub fn is_environment(&self) -> bool {
-        matches!(self, Self::Constant(_) | Self::Map(_))
+        matches!(self, Self::Constant(_) | Self::Map(_) | Self::Portal(_))
+    }
+
+    /// Whether only light sampling finds it, since no path runs into it: a Dirac light, or one on a surface that is not
+    /// there.
+    pub fn is_hidden(&self) -> bool {
+        match self {
+            Self::Area(l) => l.opacity == 0.0,
+            Self::Point(_)
+            | Self::Spot(_)
+            | Self::Distant(_)
+            | Self::Goniometric(_)
+            | Self::Projector(_)
+            | Self::Beam(_) => true,
+            Self::Constant(_) | Self::Map(_) | Self::Portal(_) => false,
+        }
     }
 
     /// A guess at the irradiance that the light makes at `p` [W·m⁻²]: zero only where the light certainly is.
@@ -144,6 +190,18 @@ impl Light {
             Self::Distant(l) => l.luminance,
             Self::Constant(l) => l.luminance * std::f32::consts::PI,
             Self::Map(l) => l.mean_luminance * std::f32::consts::PI,
+            Self::Portal(l) => l.importance(p),
+            Self::Goniometric(l) => l.importance(p),
+            Self::Projector(l) => l.importance(p),
+            Self::Beam(l) => l.importance(p),
+        }
+    }
+
+    /// The same without a place, for lights that are infinitely far away.
+    pub(crate) fn importance_at_large(&self) -> f32 {
+        match self {
+            Self::Portal(l) => l.importance_at_large(),
+            other => other.importance(Vec3::ZERO),
         }
     }
 
@@ -153,7 +211,10 @@ impl Light {
             Self::Area(l) => Some(l.shape.bounds()),
             Self::Point(l) => Some(Bounds::of([l.position])),
             Self::Spot(l) => Some(Bounds::of([l.position])),
-            Self::Distant(_) | Self::Constant(_) | Self::Map(_) => None,
+            Self::Goniometric(l) => Some(Bounds::of([l.position()])),
+            Self::Projector(l) => Some(Bounds::of([l.position])),
+            Self::Beam(l) => Some(l.shape.bounds()),
+            Self::Distant(_) | Self::Constant(_) | Self::Map(_) | Self::Portal(_) => None,
         }
     }
 }

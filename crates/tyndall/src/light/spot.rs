@@ -1,6 +1,6 @@
 //! A point that shines into a cone, with a soft rim.
 
-use super::{LightSample, Reference, Target};
+use super::{LightSample, Reference, Slide, Target};
 use crate::{
     math::Vec3,
     spectrum::{Spectrum, Wavelengths},
@@ -32,6 +32,8 @@ pub struct SpotLight {
     pub cos_outer: f32,
     /// The rim between.
     pub falloff: Falloff,
+    /// A picture in front of it, if there is one: light beyond its edges sees what its texture has there.
+    pub slide: Option<Box<Slide>>,
 }
 
 impl SpotLight {
@@ -63,13 +65,16 @@ impl SpotLight {
         let d2 = to_light.length_squared();
         let dir = to_light / d2.sqrt();
         let share = self.share(-dir.dot(self.axis));
-        (d2 > 0.0 && share > 0.0).then(|| LightSample {
-            dir,
-            li: self.intensity.eval(wavelengths) * (share / d2),
-            pdf: 1.0,
-            dirac: true,
-            target: Target::Point(self.position),
-        })
+        if !(d2 > 0.0 && share > 0.0) {
+            return None;
+        }
+        let mut li = self.intensity.eval(wavelengths) * (share / d2);
+        if let Some(slide) = &self.slide {
+            let (uv, _) = slide.place(-dir)?;
+            li *= slide.filter(uv, wavelengths);
+        }
+        let target = Target::Point(self.position);
+        (!li.is_zero()).then_some(LightSample { dir, li, pdf: 1.0, dirac: true, target })
     }
 
     /// Irradiance made at `p` [W·m⁻²].
@@ -95,6 +100,7 @@ mod tests {
             cos_inner: 20f32.to_radians().cos(),
             cos_outer: 30f32.to_radians().cos(),
             falloff,
+            slide: None,
         };
         for falloff in [Falloff::SmoothStepCosine, Falloff::LinearAngle] {
             let s = spot(falloff);

@@ -21,7 +21,6 @@ use super::{Coefficients, Inside, MediumId, MediumInterface};
 use crate::{
     material::{Index, Material},
     math::Vec3,
-    phase::Phase,
     scene::{MaterialId, Object, Scene},
     shape::{Geometry, ObjectId},
     spectrum::{Lanes, Wavelengths},
@@ -127,8 +126,6 @@ pub struct Within {
 pub struct Part {
     /// Which.
     pub id: MediumId,
-    /// Its phase function.
-    pub phase: Phase,
     /// `σ_s,i / Σσ_s` in each lane: the factor on the path's throughput [1].
     pub share: Lanes,
     /// The probability with which each lane takes this part \[1\]: the share, or any where nothing scatters.
@@ -221,7 +218,7 @@ impl Within {
         if rest.peek().is_none() {
             return Inside::of(scene, Some(first), wavelengths);
         }
-        let of = |id: MediumId| scene.media[id.0 as usize].coefficients(wavelengths);
+        let of = |id: MediumId| scene.medium(id).coefficients(wavelengths);
         Inside::Mixture { coefficients: rest.fold(of(first), |sum, id| sum + of(id)) }
     }
 
@@ -230,7 +227,7 @@ impl Within {
     /// The choice is part of the path: what it weighs and with which probability each lane would have made it is for
     /// [`crate::path::PathWeights::choose`].
     pub fn choose_part(&self, scene: &Scene, wavelengths: &Wavelengths, hero: usize, u: f32) -> Option<Part> {
-        let sigma_s = |id: MediumId| scene.media[id.0 as usize].coefficients(wavelengths).sigma_s;
+        let sigma_s = |id: MediumId| scene.medium(id).coefficients(wavelengths).sigma_s;
         let (total, count) = self.media(scene).fold((Lanes::ZERO, 0.0), |(t, n), id| (t + sigma_s(id), n + 1.0));
         let share = |s: Lanes, empty: f32| {
             Lanes::new(std::array::from_fn(|lane| {
@@ -251,8 +248,7 @@ impl Within {
             }
         }
         let (id, probability) = chosen?;
-        let phase = scene.media[id.0 as usize].phase;
-        Some(Part { id, phase, share: share(sigma_s(id), 0.0), probability })
+        Some(Part { id, share: share(sigma_s(id), 0.0), probability })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Who is inside what: boundaries between media, and the medium that a path is in.
 
 use super::{Coefficients, MediumId};
-use crate::{phase::Phase, scene::Scene, spectrum::Wavelengths};
+use crate::{scene::Scene, spectrum::Wavelengths};
 
 /// The media on the two sides of a surface; `None` is vacuum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,8 +31,6 @@ pub enum Inside {
         id: MediumId,
         /// Its coefficients in the lanes of the path.
         coefficients: Coefficients,
-        /// Its phase function.
-        phase: Phase,
     },
     /// Several media share the place: their coefficients are added. Which they are, [`super::Within`] knows.
     Mixture {
@@ -45,10 +43,7 @@ impl Inside {
     /// In medium `id` of the scene.
     #[inline]
     pub fn of(scene: &Scene, id: Option<MediumId>, wavelengths: &Wavelengths) -> Self {
-        id.map_or(Self::Vacuum, |id| {
-            let medium = &scene.media[id.0 as usize];
-            Self::Medium { id, coefficients: medium.coefficients(wavelengths), phase: medium.phase }
-        })
+        id.map_or(Self::Vacuum, |id| Self::Medium { id, coefficients: scene.medium(id).coefficients(wavelengths) })
     }
 
     /// Its id, `None` for vacuum and for a mixture.

@@ -46,13 +46,13 @@ pub enum Skin {
 impl Skin {
     /// The BSDF; [`Bsdf::Null`] where nothing is.
     #[inline]
-    pub fn bsdf<'a>(
+    pub fn bsdf<'s>(
         self,
-        material: &'a Material,
+        material: &'s Material,
         hit: &Interaction,
         wavelengths: &Wavelengths,
         hero: usize,
-    ) -> Bsdf<'a> {
+    ) -> Bsdf<'s> {
         match self {
             Self::Open => Bsdf::Null,
             Self::Written => material.bsdf(&hit.into(), wavelengths, hero),

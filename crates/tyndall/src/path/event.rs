@@ -13,7 +13,7 @@ use crate::{
 
 /// One term of the transport equation.
 #[derive(Debug, Clone, Copy)]
-pub enum Event {
+pub enum Event<'s> {
     /// Nothing more is hit.
     Escape,
     /// A surface is reached.
@@ -23,7 +23,7 @@ pub enum Event {
         /// Where [length].
         p: Vec3,
         /// How it scatters there.
-        phase: Phase,
+        phase: &'s Phase,
         /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
         emitted: Lanes,
     },
@@ -39,7 +39,7 @@ pub enum Event {
 impl Path {
     /// Samples a free flight, looks for a surface before its end, and weighs the path for what it found.
     #[inline]
-    pub fn next_event(&mut self, scene: &Scene, tally: &mut Tally) -> Event {
+    pub fn next_event<'s>(&mut self, scene: &'s Scene, tally: &mut Tally) -> Event<'s> {
         let flight = self.sample_flight();
         tally.rays += 1;
         match scene.first_surface(&self.ray, flight) {
@@ -82,16 +82,16 @@ impl Path {
     }
 
     #[inline]
-    fn collide(&mut self, scene: &Scene, flight: f32, tally: &mut Tally) -> Event {
-        let (id, phase, coefficients, part) = match &self.inside {
+    fn collide<'s>(&mut self, scene: &'s Scene, flight: f32, tally: &mut Tally) -> Event<'s> {
+        let (id, coefficients, part) = match &self.inside {
             Inside::Vacuum => return Event::Escape,
-            Inside::Medium { id, coefficients, phase } => (*id, *phase, coefficients, None),
+            Inside::Medium { id, coefficients } => (*id, coefficients, None),
             Inside::Mixture { coefficients } => {
                 let u = self.sampler.next_1d();
                 let Some(part) = self.within.choose_part(scene, &self.wavelengths, self.hero, u) else {
                     return Event::Escape;
                 };
-                (part.id, part.phase, coefficients, Some(part))
+                (part.id, coefficients, Some(part))
             }
         };
         let p = self.ray.at(flight);
@@ -113,6 +113,6 @@ impl Path {
         if let Some(Part { share, probability, .. }) = part {
             self.weights.choose(share, probability, self.hero);
         }
-        Event::Scatter { p, phase, emitted }
+        Event::Scatter { p, phase: &scene.medium(id).phase, emitted }
     }
 }

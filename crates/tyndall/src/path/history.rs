@@ -17,6 +17,8 @@ pub struct History {
     pub specular_run: u32,
     /// Whether the path has gone on with its hero wavelength alone.
     pub parted: bool,
+    /// Vertices that a limit on the depth does not count.
+    pub passes: u16,
 }
 
 /// Dirac lobes in a row after which light counts as trapped.
@@ -39,6 +41,12 @@ impl History {
         }
     }
 
+    /// Scattering events as a limit on them counts.
+    #[inline]
+    pub fn depth(&self) -> u32 {
+        self.vertices - u32::from(self.passes)
+    }
+
     /// Notes a free flight whose length was drawn.
     #[inline]
     pub fn flew(&mut self) {
@@ -56,6 +64,6 @@ impl History {
 
 impl Default for History {
     fn default() -> Self {
-        Self { vertices: 0, order: 0, eta_scale: 1.0, flights: 0, specular_run: 0, parted: false }
+        Self { vertices: 0, order: 0, eta_scale: 1.0, flights: 0, specular_run: 0, parted: false, passes: 0 }
     }
 }

@@ -13,7 +13,7 @@ use crate::{
 
 /// A scattering vertex.
 #[derive(Debug, Clone, Copy)]
-pub enum Vertex<'a> {
+pub enum Vertex<'s> {
     /// On a surface.
     Surface {
         /// Where.
@@ -21,7 +21,7 @@ pub enum Vertex<'a> {
         /// The local space of its BSDF.
         frame: Frame,
         /// How it scatters.
-        bsdf: Bsdf<'a>,
+        bsdf: Bsdf<'s>,
         /// Back along the path, local.
         wo: Vec3,
         /// How a relief shadows itself: α² \[1\].
@@ -34,7 +34,7 @@ pub enum Vertex<'a> {
         /// Direction of travel before the collision.
         dir: Vec3,
         /// How it scatters.
-        phase: Phase,
+        phase: &'s Phase,
     },
 }
 
@@ -55,14 +55,14 @@ pub struct Scattered {
     pub crossed: bool,
 }
 
-impl<'a> Vertex<'a> {
+impl<'s> Vertex<'s> {
     /// A vertex on a surface that a ray along `dir` has hit.
     ///
     /// Where the shading normal of a boundary turns away from a ray that the true surface faces, the true normal shades:
     /// the two must agree on the side that the path comes from, or it would change sides without changing media. What lets
     /// no light through has no such trouble, and the shading normal alone decides, as in pbrt and in Mitsuba.
     #[inline]
-    pub fn surface(hit: Interaction, bsdf: Bsdf<'a>, dir: Vec3) -> Self {
+    pub fn surface(hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3) -> Self {
         let frame = hit.shading_frame();
         let wo = frame.to_local(-dir);
         if may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
@@ -74,7 +74,7 @@ impl<'a> Vertex<'a> {
 
     /// The same on the relief of an embossed material, if there is one.
     #[inline]
-    pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf<'a>, dir: Vec3, relief: Option<MaterialId>) -> Self {
+    pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3, relief: Option<MaterialId>) -> Self {
         let even = Self::surface(hit, bsdf, dir);
         match relief.and_then(|id| scene.relief(id)) {
             Some(relief) => even.embossed(scene, dir, relief),
@@ -90,8 +90,7 @@ impl<'a> Vertex<'a> {
         }
         let Embossed { frame, shadowing } = relief.emboss(&scene.geometry, &hit, &even, -dir);
         let wo = frame.to_local(-dir);
-        let is_seen = shadowing.is_none() || wo.z * even_wo.z > 0.0;
-        if is_seen && may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
+        if (wo.z * even_wo.z > 0.0 || !relief.is_mirrored()) && may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
             return Self::Surface { hit, frame, bsdf, wo, shadowing };
         }
         if shadowing.is_none() {
@@ -110,6 +109,12 @@ impl<'a> Vertex<'a> {
             }
             Self::Medium { p, .. } => Reference { p: *p, normal: None },
         }
+    }
+
+    /// Whether light can go on as if nothing were there, beside other ways.
+    #[inline]
+    pub fn is_pane(&self) -> bool {
+        matches!(self, Self::Surface { bsdf: Bsdf::ThinDielectric(_), .. })
     }
 
     /// Whether light can go on beyond.
@@ -177,7 +182,8 @@ impl<'a> Vertex<'a> {
                 let cos_theta = phase.sample(u);
                 let dir = deflect(*dir, cos_theta, v);
                 let pdf = phase.eval(cos_theta);
-                Some(Scattered {
+                // A table may end at 0, and rounding ends there.
+                (pdf > 0.0).then(|| Scattered {
                     ray: Ray::new(*p, dir),
                     weight: Lanes::ONE,
                     pdf,

@@ -4,9 +4,10 @@
 //! Every model here is symmetric around the old direction of travel, so it sees nothing but the cosine between the two
 //! directions **of travel**: +1 goes straight on, −1 goes back. Frames and azimuth live in one function, [`deflect`].
 //!
-//! The inverse distribution of each model is closed and free of branches and of library calls, so that a scalar path
-//! and a SIMD lane give the same bits. To add a model: one file, one variant with its three forwarding lines, one row
-//! in the sampler table of `tests/models.rs`.
+//! The inverse distribution of each model is exact and free of library calls, so that a scalar path and a SIMD lane give
+//! the same bits; those of the closed models are free of branches too. Tables and blends are shared and never change:
+//! the media of a scene own them, and a path refers to them. To add a model: one file, one variant with its three
+//! forwarding lines, one row in the sampler table of `tests/models.rs`.
 //!
 //! ```
 //! use tyndall::{math::Vec3, phase::{Phase, deflect}};
@@ -17,13 +18,19 @@
 //! # Ok::<(), tyndall::phase::PhaseError>(())
 //! ```
 
+mod blend;
 mod henyey_greenstein;
 mod isotropic;
 mod rayleigh;
+mod tabulated;
 
+pub use blend::Blend;
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
 pub use rayleigh::Rayleigh;
+pub use tabulated::Tabulated;
+
+use std::sync::Arc;
 
 use crate::math::{Frame, Vec3, fast::sin_cos_turn};
 
@@ -35,10 +42,16 @@ pub enum PhaseError {
         "the mean cosine g of a Henyey-Greenstein phase function must lie between -1 and 1, both excluded: got {0}"
     )]
     MeanCosine(f32),
+    /// The values of a table are no distribution.
+    #[error("the table of a phase function has at least two values, none of them negative and not all of them 0")]
+    Table,
+    /// The weight of a blend is outside of [0, 1], or not a number.
+    #[error("the weight of a blend of phase functions must lie between 0 and 1: got {0}")]
+    Weight(f32),
 }
 
 /// A phase function. The methods only forward.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Phase {
     /// All directions alike.
     Isotropic(Isotropic),
@@ -46,6 +59,10 @@ pub enum Phase {
     HenyeyGreenstein(HenyeyGreenstein),
     /// Particles far smaller than the wavelength.
     Rayleigh(Rayleigh),
+    /// By values at regular cosines.
+    Tabulated(Arc<Tabulated>),
+    /// A weighted sum of others.
+    Blend(Arc<Blend>),
 }
 
 impl Phase {
@@ -58,6 +75,22 @@ impl Phase {
         Ok(if g == 0.0 { Self::Isotropic(Isotropic) } else { Self::HenyeyGreenstein(model) })
     }
 
+    /// Linear between relative values at regularly spaced cosines from −1 to 1.
+    ///
+    /// # Errors
+    /// [`PhaseError::Table`] with fewer than two values, a negative one, or nothing but zeros.
+    pub fn tabulated(values: &[f64]) -> Result<Self, PhaseError> {
+        Tabulated::new(values).map(|table| Self::Tabulated(Arc::new(table)))
+    }
+
+    /// `1 − weight` of the first and `weight` of the second.
+    ///
+    /// # Errors
+    /// [`PhaseError::Weight`] when the weight is not in [0, 1].
+    pub fn blend(first: &Self, second: &Self, weight: f32) -> Result<Self, PhaseError> {
+        Blend::new(first, second, weight).map(|blend| Self::Blend(Arc::new(blend)))
+    }
+
     /// The density `p(cos θ)` [1/sr] over the sphere of directions.
     #[inline]
     pub fn eval(&self, cos_theta: f32) -> f32 {
@@ -65,6 +98,8 @@ impl Phase {
             Self::Isotropic(model) => model.eval(cos_theta),
             Self::HenyeyGreenstein(model) => model.eval(cos_theta),
             Self::Rayleigh(model) => model.eval(cos_theta),
+            Self::Tabulated(model) => model.eval(cos_theta),
+            Self::Blend(model) => model.eval(cos_theta),
         }
     }
 
@@ -75,6 +110,8 @@ impl Phase {
             Self::Isotropic(model) => model.sample(u),
             Self::HenyeyGreenstein(model) => model.sample(u),
             Self::Rayleigh(model) => model.sample(u),
+            Self::Tabulated(model) => model.sample(u),
+            Self::Blend(model) => model.sample(u),
         }
     }
 
@@ -85,6 +122,8 @@ impl Phase {
             Self::Isotropic(model) => model.mean_cosine(),
             Self::HenyeyGreenstein(model) => model.mean_cosine(),
             Self::Rayleigh(model) => model.mean_cosine(),
+            Self::Tabulated(model) => model.mean_cosine(),
+            Self::Blend(model) => model.mean_cosine(),
         }
     }
 }

@@ -7,6 +7,7 @@ pub mod sampler;
 pub mod spherical_rectangle;
 pub mod spherical_triangle;
 pub mod warp;
+pub mod windowed2d;
 
 pub use rng::Rng;
 pub use sampler::{Sampler, SamplerKind};

@@ -6,7 +6,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::{Geometry, Hit, Interaction, Mesh, Shape};
-use crate::math::Vec3;
+use crate::math::{Vec2, Vec3};
 
 /// Derivatives by the surface parameters, in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,7 +77,7 @@ impl Local {
 fn mesh_derivatives(mesh: &Mesh, prim: u32) -> Local {
     let corners = mesh.indices[prim as usize].map(|i| i as usize);
     let [p0, p1, p2] = corners.map(|i| mesh.positions[i].as_dvec3());
-    let [uv0, uv1, uv2] = mesh.corner_uvs(prim).map(|uv| uv.as_dvec2());
+    let [uv0, uv1, uv2] = mesh.corner_uvs(prim).map(Vec2::as_dvec2);
     let (d1, d2) = (uv1 - uv0, uv2 - uv0);
     let det = d1.perp_dot(d2);
     let solve = |e1: DVec3, e2: DVec3| [(e1 * d2.y - e2 * d1.y) / det, (e2 * d1.x - e1 * d2.x) / det];
@@ -104,7 +104,7 @@ fn is_turned(mesh: &Mesh, prim: u32, n: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Ray, Transform, Vec2};
+    use crate::math::{Ray, Transform};
     use crate::shape::{Cylinder, Disk, DiskMapping, GeometryBuilder, Patch, Sphere, SpherePart, Turn};
 
     fn geometry(kind: usize, transform: &Transform, instanced: bool) -> Geometry {

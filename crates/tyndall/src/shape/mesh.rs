@@ -31,7 +31,7 @@ impl Mesh {
 
     /// The parameters of the corners of a triangle.
     #[inline]
-    pub(super) fn corner_uvs(&self, prim: u32) -> [Vec2; 3] {
+    pub fn corner_uvs(&self, prim: u32) -> [Vec2; 3] {
         if self.uvs.is_empty() {
             return [Vec2::ZERO, Vec2::X, Vec2::ONE];
         }

@@ -69,6 +69,19 @@ impl Patch {
 
     /// The nearest point with a positive distance before `t_max`.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<PatchHit> {
+        let mut best: Option<PatchHit> = None;
+        for [t, u, v] in self.crossings(ray).into_iter().flatten() {
+            let limit = best.map_or(t_max, |b| b.t);
+            let within = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
+            if within && t > 0.0 && (t as f32) < limit {
+                best = Some(PatchHit { t: t as f32, uv: Vec2::new(u as f32, v as f32) });
+            }
+        }
+        best
+    }
+
+    /// `[t, u, v]` where the line of a ray passes the surface that the patch is a part of.
+    pub(crate) fn crossings(&self, ray: &Ray) -> [Option<[f64; 3]>; 2] {
         let dir = ray.dir.as_dvec3();
         let [p00, p10, p01, p11] = self.corners.map(|p| p.as_dvec3() - ray.origin.as_dvec3());
         // The line u = const runs from `start` to `start + along`; both are linear in u.
@@ -78,22 +91,13 @@ impl Patch {
         let c0 = start.cross(dir).dot(along);
         let c1 = start_slope.cross(dir).dot(along) + start.cross(dir).dot(along_slope);
         let c2 = start_slope.cross(dir).dot(along_slope);
-        let mut best: Option<PatchHit> = None;
-        for u in quadratic(c0, c1, c2).into_iter().flatten() {
-            if !(0.0..=1.0).contains(&u) {
-                continue;
-            }
+        quadratic(c0, c1, c2).map(|u| {
+            let u = u?;
             let (from, along) = (start + start_slope * u, along + along_slope * u);
             let across = dir.cross(along);
             let square = across.length_squared();
-            let t = across.dot(from.cross(along)) / square;
-            let v = across.dot(from.cross(dir)) / square;
-            let limit = best.map_or(t_max, |b| b.t);
-            if (0.0..=1.0).contains(&v) && t > 0.0 && (t as f32) < limit {
-                best = Some(PatchHit { t: t as f32, uv: Vec2::new(u as f32, v as f32) });
-            }
-        }
-        best
+            Some([across.dot(from.cross(along)) / square, u, across.dot(from.cross(dir)) / square])
+        })
     }
 
     /// By the parameters.

@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     fn at(p: Vec3) -> TexturePoint {
-        TexturePoint { p, uv: Vec2::new(0.25, 0.5), n: Vec3::Z }
+        TexturePoint { p, uv: Vec2::new(0.25, 0.5), n: Vec3::Z, part: None }
     }
 
     #[test]

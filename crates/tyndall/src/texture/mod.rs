@@ -9,6 +9,7 @@
 //!
 //! Source of the patterns: Pharr, Jakob and Humphreys 2023, § 10.4 and § 10.5; Perlin 2002, "Improving Noise".
 
+pub mod attribute;
 pub mod image;
 pub mod mapping;
 pub mod noise;
@@ -16,6 +17,7 @@ pub mod pattern;
 
 use std::sync::Arc;
 
+pub use attribute::Attribute;
 pub use image::{Grey, ImageTexture, Interpolation, Picture, Wrap};
 pub use mapping::{Mapping2, Mapping3};
 pub use noise::Noise;
@@ -35,12 +37,26 @@ pub struct TexturePoint {
     pub uv: Vec2,
     /// Shading normal.
     pub n: Vec3,
+    /// Whose surface it is, if it is that of a shape of the scene.
+    pub part: Option<Part>,
+}
+
+/// A part of an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Index of the object.
+    pub object: u32,
+    /// Index of the triangle, or 0.
+    pub prim: u32,
+    /// The placed copy of it, or [`crate::shape::Hit::NO_INSTANCE`].
+    pub instance: u32,
 }
 
 impl From<&Interaction> for TexturePoint {
     #[inline]
     fn from(hit: &Interaction) -> Self {
-        Self { p: hit.p, uv: hit.uv, n: hit.ns }
+        let part = Part { object: hit.object.0, prim: hit.prim, instance: hit.instance };
+        Self { p: hit.p, uv: hit.uv, n: hit.ns, part: Some(part) }
     }
 }
 
@@ -51,6 +67,8 @@ pub enum Texture {
     Constant(Spectrum),
     /// A picture.
     Image(ImageTexture),
+    /// Colours of the mesh itself.
+    Attribute(Attribute),
     /// A number that wanders at random through space.
     Noise(Noise),
     /// pbrt's marble: a veined grey.
@@ -138,7 +156,7 @@ impl Texture {
             let uv = at.uv + axis * STEP;
             // What is left of the step after rounding.
             let step = (uv - at.uv).dot(axis);
-            let there = TexturePoint { p: at.p + tangent * STEP, uv, n: at.n };
+            let there = TexturePoint { p: at.p + tangent * STEP, uv, ..*at };
             (self.scalar(&there) - here) / if step > 0.0 { step } else { STEP }
         };
         Vec2::new(along(du, Vec2::X), along(dv, Vec2::Y))
@@ -161,7 +179,7 @@ impl Texture {
     pub fn cost(&self) -> u64 {
         let sum = |parts: &[Self]| parts.iter().fold(1u64, |sum, part| sum.saturating_add(part.cost()));
         match self {
-            Self::Constant(_) | Self::Image(_) | Self::Noise(_) | Self::Marble(_) => 1,
+            Self::Constant(_) | Self::Image(_) | Self::Attribute(_) | Self::Noise(_) | Self::Marble(_) => 1,
             Self::Scale(of) => sum(of.as_slice()),
             Self::Mix { of, by } => match by.as_ref() {
                 Weight::Texture(weight) => sum(of.as_slice()).saturating_add(weight.cost()),
@@ -195,7 +213,7 @@ impl Texture {
                 let part = |i: usize| splat(weights[i]) * corners[i].vary(at, leaf, splat);
                 part(0) + part(1) + part(2) + part(3)
             }
-            Self::Constant(_) | Self::Image(_) | Self::Noise(_) | Self::Marble(_) => leaf(self),
+            Self::Constant(_) | Self::Image(_) | Self::Attribute(_) | Self::Noise(_) | Self::Marble(_) => leaf(self),
         }
     }
 
@@ -203,6 +221,7 @@ impl Texture {
         match self {
             Self::Constant(spectrum) => spectrum.eval(wavelengths),
             Self::Image(image) => image.eval(at, wavelengths),
+            Self::Attribute(attribute) => image::reflectance(attribute.rgb(at), wavelengths),
             Self::Marble(marble) => image::reflectance(marble.rgb(at), wavelengths),
             other => Lanes::splat(other.number(at)),
         }
@@ -213,6 +232,7 @@ impl Texture {
             Self::Constant(Spectrum::Constant(value)) => Vec3::splat(*value),
             Self::Constant(spectrum) => Vec3::from_array(spectrum.rgb()),
             Self::Image(image) => Vec3::from_array(image.rgb(at)),
+            Self::Attribute(attribute) => Vec3::from_array(attribute.rgb(at)),
             Self::Marble(marble) => Vec3::from_array(marble.rgb(at)),
             other => Vec3::splat(other.number(at)),
         }
@@ -223,6 +243,7 @@ impl Texture {
             Self::Constant(Spectrum::Constant(value)) => *value,
             Self::Constant(spectrum) => mean(spectrum.rgb()),
             Self::Image(image) => image.number(at),
+            Self::Attribute(attribute) => mean(attribute.rgb(at)),
             Self::Marble(marble) => mean(marble.rgb(at)),
             Self::Noise(noise) => noise.at(at.p),
             Self::Scale(_) | Self::Mix { .. } | Self::Bilinear { .. } => self.scalar(at),
@@ -250,7 +271,7 @@ mod tests {
     use super::*;
 
     fn at(u: f32, v: f32) -> TexturePoint {
-        TexturePoint { p: Vec3::new(u, v, 0.0), uv: Vec2::new(u, v), n: Vec3::Z }
+        TexturePoint { p: Vec3::new(u, v, 0.0), uv: Vec2::new(u, v), n: Vec3::Z, part: None }
     }
 
     fn pair(a: f32, b: f32) -> Arc<[Texture; 2]> {

@@ -235,6 +235,14 @@ impl World {
         self.shine(EmitterShape::Disk { centre: Vec3::Y * y, ng: -Vec3::Y, radius, inner: 0.0 }, le);
     }
 
+    /// A mesh that is one light.
+    pub(crate) fn shining_mesh(&mut self, mesh: Mesh, material: Material, light: AreaLight) {
+        self.object(material, None);
+        self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
+        self.objects.last_mut().unwrap().emission = Emission::Whole(LightId(self.lights.len() as u32));
+        self.lights.push(Light::Area(light));
+    }
+
     fn shine(&mut self, shape: EmitterShape, le: f32) {
         let id = LightId(self.lights.len() as u32);
         self.objects.last_mut().unwrap().emission = Emission::Whole(id);
@@ -244,6 +252,7 @@ impl World {
             luminance: le,
             two_sided: false,
             opacity: 1.0,
+            pattern: None,
         }));
     }
 
@@ -255,8 +264,10 @@ impl World {
 
     /// Radiance `above` from all directions with y > 0 and `below` from the others.
     pub(crate) fn half_sky(&mut self, above: f32, below: f32) {
-        let pixels = [[above; 3], [above; 3], [below; 3], [below; 3]];
-        let map = EnvironmentMap::new(Transform::IDENTITY, Projection::LatLong, 1, 4, &pixels, 1.0).unwrap();
+        // In the map's own space the left half of an equal-area square has x < 0.
+        let pixels = [[below; 3], [above; 3], [below; 3], [above; 3]];
+        let upright = Transform::new(glam::DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2)).unwrap();
+        let map = EnvironmentMap::new(upright, Projection::EqualArea, 2, 2, &pixels, 1.0).unwrap();
         self.lights.push(Light::Map(Box::new(map)));
     }
 

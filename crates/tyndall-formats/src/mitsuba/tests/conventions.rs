@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
+use tyndall::shape::Turn;
 
 use super::*;
 use crate::desc::{
@@ -172,6 +173,17 @@ fn shapes_keep_their_files_and_sides() {
     );
     assert_eq!(sphere.to_world.transform_point3(DVec3::ZERO), DVec3::new(2.0, 4.0, 6.0));
     assert_eq!((sphere.kind, sphere.reverse_orientation), (ShapeKind::sphere(4.0), true));
+    // From its own z axis to that between the two points; azimuth 0 where Duff's frame has it: at +x for +z.
+    let cylinder = shape(
+        "<shape type=\"cylinder\"><point name=\"p0\" x=\"1\" y=\"2\" z=\"3\"/><point name=\"p1\" x=\"1\" y=\"4\" z=\"3\"/>\
+         <float name=\"radius\" value=\"0.5\"/></shape>",
+    );
+    assert_eq!(cylinder.kind, ShapeKind::Cylinder { radius: 0.5, heights: [0.0, 2.0], turn: Turn::FULL });
+    let to_world = |p| cylinder.to_world.transform_point3(p);
+    assert_eq!(
+        [to_world(DVec3::ZERO), to_world(DVec3::Z * 2.0)],
+        [DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 4.0, 3.0)]
+    );
     let ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } =
         shape("<shape type=\"obj\"><string name=\"filename\" value=\"meshes/bunny.obj\"/></shape>").kind
     else {
@@ -305,7 +317,7 @@ fn a_medium_takes_constant_volumes_and_rayleigh_scattering() {
     ))
     .media[0];
     let Coefficients::ExtinctionAlbedo { sigma_t, .. } = &medium.coefficients else { panic!() };
-    assert_eq!((&sigma_t.value, medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), PhaseDesc::Rayleigh));
+    assert_eq!((&sigma_t.value, &medium.phase), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), &PhaseDesc::Rayleigh));
 }
 
 /// Mitsuba's conductor without a material has eta = 0 and k = 1 unless told.
@@ -396,4 +408,18 @@ fn the_v_of_a_sphere_runs_down() {
     assert_eq!(to_world.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(to_world.transform_vector3(DVec3::Z), -DVec3::Z);
     assert_eq!(to_world.transform_vector3(DVec3::X), DVec3::X);
+}
+
+/// With a field of view of 90° the picture spans −1 to 1 of the plane z = 1, −½ to ½ upright. Half its width to the right
+/// and a quarter of its height down, it spans 0 to 2, and −¾ to ¼.
+#[test]
+fn the_principal_point_moves_the_picture_over_the_view() {
+    let camera = camera(
+        "<float name=\"fov\" value=\"90\"/><float name=\"principal_point_offset_x\" value=\"0.5\"/>\
+         <float name=\"principal_point_offset_y\" value=\"0.25\"/>",
+    );
+    let window = camera.window(200, 100).unwrap();
+    for (found, expected) in [(window.left, 0.0), (window.right, 2.0), (window.bottom, -0.75), (window.top, 0.25)] {
+        assert!((found - expected).abs() < 1e-12, "{window:?}");
+    }
 }

@@ -27,7 +27,7 @@ const FAULTS: &[(&str, &str)] = &[
     (r"<shape/>", r#"2:2: <shape> lacks the attribute "type""#),
     (
         r#"<shape type="cube"><bsdf type="hair"/></shape>"#,
-        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "blendbsdf", "mask", "bumpmap", "normalmap""#,
+        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "roughplastic", "principled", "principledthin", "blendbsdf", "mask", "bumpmap", "normalmap""#,
     ),
     (
         r#"<medium type="heterogeneous"><float name="x" value="1"/></medium>"#,
@@ -71,7 +71,7 @@ const FAULTS: &[(&str, &str)] = &[
     ),
     (
         r#"<bsdf type="diffuse"><texture name="reflectance" type="volume"/></bsdf>"#,
-        r#"2:56: the texture "volume" is not known yet | known are "bitmap", "checkerboard""#,
+        r#"2:56: the texture "volume" is not known yet | known are "bitmap", "checkerboard", "mesh_attribute""#,
     ),
     (
         r#"<shape type="cube"><boolean name="flip_normals" value="yes"/></shape>"#,
@@ -94,8 +94,32 @@ const FAULTS: &[(&str, &str)] = &[
         r#"2:35: "dielectric" is not a surface that only reflects | leave the "twosided" out"#,
     ),
     (
+        r#"<bsdf type="twosided"><bsdf type="principled"><float name="spec_trans" value="0.5"/></bsdf></bsdf>"#,
+        r#"2:35: "principled" is not a surface that only reflects | leave the "twosided" out"#,
+    ),
+    (
+        r#"<bsdf type="principled"><float name="eta" value="1.5"/><float name="specular" value="0.5"/></bsdf>"#,
+        r#"2:86: "specular" and "eta" say the same: give one of them"#,
+    ),
+    (
+        r#"<bsdf type="roughplastic"><string name="distribution" value="phong"/></bsdf>"#,
+        r#"2:62: "distribution" cannot be "phong" | known are "beckmann", "ggx""#,
+    ),
+    (
         r#"<medium type="homogeneous"><phase type="hg"><float name="g" value="1"/></phase></medium>"#,
         r#"2:68: "g" must be greater than -1 and less than 1, not 1"#,
+    ),
+    (
+        r#"<medium type="homogeneous"><phase type="tabphase"/></medium>"#,
+        r#"2:28: "tabphase" lacks its "values" | from straight back to straight on, at regular cosines"#,
+    ),
+    (
+        r#"<medium type="homogeneous"><phase type="blendphase"><float name="weight" value="1"/><phase type="hg"/></phase></medium>"#,
+        r#"2:28: "blendphase" is made of 2 <phase>, not of 1"#,
+    ),
+    (
+        r#"<phase type="blendphase" id="a"><float name="weight" value="1"/><phase type="hg"/><ref id="a"/></phase><medium type="homogeneous"><ref id="a"/></medium>"#,
+        "2:1: phase functions are blended more than 5 deep",
     ),
     (
         r#"<integrator type="path"><integer name="max_depth" value="0"/></integrator>"#,
@@ -278,7 +302,7 @@ fn a_batch_has_sensors_that_share_its_film() {
         let text = format!("<scene version=\"3.0.0\"><sensor type=\"batch\">{inside}</sensor></scene>");
         parse(Path::new("a.xml"), &text, &[]).map(|_| ()).unwrap_err().to_string()
     };
-    for inside in ["", "<sensor type=\"distant\"/>", "<sensor type=\"batch\"/>"] {
+    for inside in ["", "<sensor type=\"telescope\"/>", "<sensor type=\"batch\"/>"] {
         assert!(faults(inside).contains("the batch has no <sensor> that can be used"), "{inside}");
     }
     let five = "<sensor type=\"perspective\"/>".repeat(5);

@@ -51,7 +51,7 @@ fn marble_keeps_its_coefficients_and_glass_its_index() {
     let Coefficients::ExtinctionAlbedo { sigma_t, albedo } = &s.media[0].coefficients else { panic!() };
     assert_eq!(sigma_t.value, SpectrumDesc::Rgb([0.72897476, 0.87263476, 1.0]));
     assert_eq!(albedo.value, SpectrumDesc::Rgb([0.99904201, 0.99843756, 0.99763892]));
-    assert_eq!((s.media[0].scale.value, s.media[0].phase), (3.0071, PhaseDesc::Isotropic));
+    assert_eq!((s.media[0].scale.value, &s.media[0].phase), (3.0071, &PhaseDesc::Isotropic));
     let MaterialKind::Dielectric { eta, roughness, .. } = &s.materials[0].kind else { panic!() };
     assert_eq!((&eta.value, roughness.alpha()), (&SpectrumDesc::Constant(1.5), Some([0.0; 2])));
     let interface = s.shapes[0].interface.unwrap();
@@ -74,7 +74,7 @@ fn rough_glass_without_a_distribution_is_beckmanns() {
 #[test]
 fn the_spot_shines_down_on_the_cube_and_fades_linearly_in_the_angle() {
     let s = loaded("a2_marble_cube_spot.xml");
-    let LightKind::Spot { intensity, cutoff, beam, falloff } = &s.lights[0].kind else { panic!() };
+    let LightKind::Spot { intensity, cutoff, beam, falloff, .. } = &s.lights[0].kind else { panic!() };
     assert_eq!(intensity.spectrum.value, SpectrumDesc::Rgb([100_000.0; 3]));
     assert_eq!((*cutoff, *beam, *falloff), (3.0, 2.25, SpotFalloff::LinearAngle));
     assert_eq!(s.lights[0].to_world.transform_point3(DVec3::ZERO), DVec3::new(0.0, 0.0, 60.0));

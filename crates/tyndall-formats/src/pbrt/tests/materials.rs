@@ -6,13 +6,18 @@ use tyndall::{
     bsdf::Bsdf,
     material::Material,
     math::{Vec2, Vec3},
+    relief::Rule,
     spectrum::{ColorMode, Lanes, Wavelengths},
     texture::TexturePoint,
 };
 
 use super::{parse, world};
 use crate::build::build;
-use crate::desc::{BaseDesc, ConductorOptics, MaterialKind, SpectrumDesc, Varying};
+use crate::desc::{
+    BaseDesc, ConductorOptics, Encoding, MaterialKind, ReliefMap, SpectrumDesc, TextureId, TextureKind, Varying,
+    WrapKind,
+};
+use crate::source::Spanned;
 
 #[test]
 fn a_mix_names_two_materials_that_may_come_later() {
@@ -64,6 +69,30 @@ fn a_material_that_contains_itself_is_an_error() {
     assert_eq!(fault(&doubled), message);
 }
 
+/// A normal map comes before heights; heights may be a number, and stay in scene units. The even material is another one, and
+/// the name is that of both together.
+#[test]
+fn a_material_with_a_relief_is_another_material_embossed() {
+    let desc = world(
+        r#"Texture "bumps" "float" "fbm" MakeNamedMaterial "m" "string type" "conductor" "texture displacement" "bumps"
+        Material "dielectric" "float displacement" -2 "string normalmap" "n.png" Material "diffuse""#,
+    );
+    let kind = |kind: &MaterialKind| match kind {
+        MaterialKind::Embossed { of, map, rule: Rule::Pbrt } => Some((of.value, map.clone())),
+        _ => None,
+    };
+    let embossed: Vec<_> = desc.materials.iter().filter_map(|m| kind(&m.kind).zip(Some(m.name.as_deref()))).collect();
+    let [((metal, heights), Some("m")), ((glass, normals), None)] = &embossed[..] else { panic!("{embossed:?}") };
+    assert!(matches!(desc.material(*metal).unwrap().kind, MaterialKind::Conductor { .. }));
+    assert!(
+        matches!(heights, ReliefMap::Heights { texture, scale: 1.0 } if texture.value == Varying::Texture(TextureId(0)))
+    );
+    assert!(matches!(desc.material(*glass).unwrap().kind, MaterialKind::Dielectric { .. }));
+    let ReliefMap::Normals(Spanned { value: Varying::Texture(id), .. }) = normals else { panic!() };
+    let TextureKind::Image(image) = &desc.texture(*id).unwrap().kind else { panic!() };
+    assert_eq!((image.encoding, image.wrap), (Encoding::Linear, WrapKind::Repeat));
+}
+
 /// pbrt's defaults, and each parameter by its name.
 #[test]
 fn coats_have_the_defaults_of_pbrt() {
@@ -111,7 +140,7 @@ fn a_texture_may_be_scaled_by_more_than_1() {
         Material "diffuse" "texture reflectance" "a" Shape "sphere""#;
     let (desc, sources) = parse(Path::new("scene.pbrt"), text).unwrap();
     let (scene, _) = build(&desc, sources, ColorMode::Rgb).unwrap();
-    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z };
+    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z, part: None };
     let Bsdf::Diffuse(diffuse) = scene.materials[0].bsdf(&at, &Wavelengths::Rgb, 0) else { panic!() };
     let expected = Lanes::rgb(0.6, 1.0, 0.3);
     assert!((diffuse.reflectance - expected).map(f32::abs).max_lane() < 1e-6, "{diffuse:?}");

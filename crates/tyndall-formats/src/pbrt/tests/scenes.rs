@@ -48,7 +48,7 @@ fn the_milk_stands_inside_a_glass_sphere_and_the_lamp_looks_down_at_it() {
     let desc = peer("c_wholemilk_sphere.pbrt");
     let milk = &desc.media[0];
     assert!(matches!(&milk.coefficients, Coefficients::Preset { name, reduced: true } if name.value == "Wholemilk"));
-    assert_eq!((milk.phase, milk.scale.value), (PhaseDesc::Isotropic, 1.0));
+    assert_eq!((&milk.phase, milk.scale.value), (&PhaseDesc::Isotropic, 1.0));
 
     let [lamp, _, sphere] = &desc.shapes[..] else { panic!("{} shapes", desc.shapes.len()) };
     assert_eq!(sphere.kind, ShapeKind::sphere(20.0));

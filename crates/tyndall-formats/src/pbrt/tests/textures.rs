@@ -84,3 +84,24 @@ fn a_texture_lies_in_the_space_of_its_definition() {
     let TextureKind::Checkerboard { board: Board::Cubes { from_world }, .. } = desc.textures[0].kind else { panic!() };
     assert_eq!(from_world.transform_point3(DVec3::new(3.0, 0.0, 0.0)), DVec3::ZERO);
 }
+
+/// Two textures of one picture, in two materials, show one and the same: it was read once.
+#[test]
+fn a_picture_is_read_once_however_many_textures_show_it() {
+    use tyndall::{material::Material, texture::Texture};
+    let picture = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/words/data/picture.png");
+    let material = |name: &str, scale: f64| {
+        format!(
+            r#"Texture "{name}" "spectrum" "imagemap" "string filename" "{picture}" "float scale" {scale}
+            Material "diffuse" "texture reflectance" "{name}" Shape "sphere""#
+        )
+    };
+    let text = format!("WorldBegin {} {}", material("a", 1.0), material("b", 0.5));
+    let (desc, sources) = parse(std::path::Path::new("scene.pbrt"), &text).unwrap();
+    let (scene, _) = crate::build::build(&desc, sources, tyndall::spectrum::ColorMode::Rgb).unwrap();
+    let picture = |i: usize| match &scene.materials[i] {
+        Material::Diffuse { reflectance: Texture::Image(image), .. } => std::sync::Arc::clone(&image.picture),
+        other => panic!("{other:?}"),
+    };
+    assert!(std::sync::Arc::ptr_eq(&picture(0), &picture(1)));
+}

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
-use tyndall::shape::{DiskMapping, Turn};
+use tyndall::shape::{DiskMapping, SpherePart, Turn};
 
 use super::{parse, scene, world};
 use crate::desc::{
     ApertureDesc, CameraKind, Coefficients, ConductorOptics, CropDesc, EnvironmentMapping, FilterDesc, FovAxis,
     LengthUnit, LightKind, Magnitude, MaterialKind, MeshDesc, PhaseDesc, ShapeKind, SpectrumDesc, SphereMapping,
-    Varying,
+    TextureId, Varying,
 };
 use crate::error::Unsupported;
 use crate::load;
@@ -69,7 +69,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
     let medium = &desc.media[0];
     let Coefficients::AbsorptionScattering { sigma_a, sigma_s } = &medium.coefficients else { panic!() };
     assert_eq!((&sigma_a.value, &sigma_s.value), (&SpectrumDesc::Constant(1.0), &SpectrumDesc::Constant(1.0)));
-    assert_eq!((medium.phase, medium.scale.value, &medium.emission), (PhaseDesc::Isotropic, 1.0, &None));
+    assert_eq!((&medium.phase, medium.scale.value, &medium.emission), (&PhaseDesc::Isotropic, 1.0, &None));
 
     let [point, spot, distant, constant, sky] = &desc.lights[..] else { panic!() };
     let LightKind::Point { intensity } = &point.kind else { panic!() };
@@ -81,7 +81,7 @@ fn shapes_materials_media_and_lights_have_the_defaults_of_pbrt() {
         assert_eq!(light.to_world.transform_vector3(DVec3::Z), DVec3::Z);
     }
     assert!(matches!(constant.kind, LightKind::Constant { .. }));
-    let LightKind::Environment { path, scale, mapping } = &sky.kind else { panic!() };
+    let LightKind::Environment { path, scale, mapping, .. } = &sky.kind else { panic!() };
     assert_eq!((path.value.to_str(), *scale), (Some("sky.exr"), 2.0));
     assert_eq!(*mapping, EnvironmentMapping::EqualAreaOctahedral);
 }
@@ -355,4 +355,73 @@ fn a_gbuffer_has_the_layers_of_pbrt() {
     let wanted = ["Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"];
     assert_eq!(names[..9], wanted);
     assert_eq!(names[9..], ["Ns.X", "Ns.Y", "Ns.Z", "u", "v"]);
+}
+
+/// Bounds may come in any order and reach beyond; a mirroring matrix turns quadrics inside out, as in pbrt.
+#[test]
+fn parts_of_quadrics_are_what_their_bounds_say() {
+    let desc = world(
+        r#"Shape "sphere" "float radius" 2 "float zmin" 1 "float zmax" -9 "float phimax" 90
+        Shape "cylinder" "float zmin" 3 "float zmax" -1 Scale -1 1 1 Shape "cylinder" "float radius" 0.5
+        Shape "disk" "float phimax" 270
+        Shape "loopsubdiv" "integer levels" 2 "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "integer indices" [ 0 1 2 ]
+        Texture "h" "float" "constant" Shape "plymesh" "string filename" "a.ply" "texture displacement" "h""#,
+    );
+    let part = SpherePart::new(2.0, [-2.0, 1.0], Turn::degrees(90.0));
+    assert_eq!(desc.shapes[0].kind, ShapeKind::Sphere { radius: 2.0, part });
+    let cylinder = |radius, heights| ShapeKind::Cylinder { radius, heights, turn: Turn::FULL };
+    assert_eq!((&desc.shapes[1].kind, desc.shapes[1].reverse_orientation), (&cylinder(1.0, [-1.0, 3.0]), false));
+    assert_eq!((&desc.shapes[2].kind, desc.shapes[2].reverse_orientation), (&cylinder(0.5, [-1.0, 1.0]), true));
+    assert!(matches!(desc.shapes[3].kind, ShapeKind::Disk { turn, .. } if turn == Turn::degrees(270.0)));
+    assert!(matches!(&desc.shapes[4].kind, ShapeKind::Subdivision { levels: 2, indices, .. } if indices.len() == 1));
+    let ShapeKind::Ply { displacement: Some(displacement), .. } = &desc.shapes[5].kind else { panic!() };
+    assert_eq!((displacement.edge_length, displacement.height.value.clone()), (1.0, Varying::Texture(TextureId(0))));
+}
+
+/// 470 nm in 16 bands of 29.375 nm, called by their middles; the render must have wavelengths.
+#[test]
+fn a_spectral_film_has_bands_of_wavelengths() {
+    use tyndall::film::{Bands, Recorded};
+    use tyndall::spectrum::ColorMode;
+    let film = |params: &str| {
+        let text = format!("Film \"spectral\" {params} WorldBegin Shape \"sphere\"");
+        super::parse(std::path::Path::new("scene.pbrt"), &text)
+    };
+    let (desc, sources) = film("").unwrap();
+    assert_eq!(desc.film.layers.len(), 4);
+    assert_eq!(desc.film.layers[0].channels, ["S0.374,688nm", "S0.404,062nm", "S0.433,438nm", "S0.462,812nm"]);
+    let bands = |i: usize| match desc.film.layers[i].recorded {
+        Recorded::Light(bands) => bands,
+        Recorded::Surface(_) => panic!(),
+    };
+    assert_eq!(bands(1), Bands { first: 360.0 + 4.0 * 29.375, width: 29.375, count: 4 });
+    assert_eq!(desc.film.color(), ColorMode::Spectral);
+    let error = crate::build::build(&desc, sources.clone(), ColorMode::Rgb).unwrap_err();
+    assert_eq!(error.errors[0].message, "this film records wavelengths, and the render has colours only");
+    crate::build::build(&desc, sources, ColorMode::Spectral).unwrap();
+
+    let (desc, _) = film(r#""integer nbuckets" 5 "float lambdamin" 400 "float lambdamax" 700"#).unwrap();
+    assert_eq!(desc.film.layers[1].channels, ["S0.670,000nm"]);
+    for wrong in [
+        r#""integer nbuckets" 0"#,
+        r#""integer nbuckets" 1025"#,
+        r#""float lambdamin" 350"#,
+        r#""float lambdamax" 831"#,
+        r#""float lambdamin" 500 "float lambdamax" 500"#,
+    ] {
+        assert_eq!(film(wrong).unwrap_err().errors.len(), 1, "{wrong}");
+    }
+}
+
+#[test]
+fn a_sensor_is_the_observer_and_cameras_are_told_why_not() {
+    let fault = |sensor: &str| {
+        let text = format!("Film \"rgb\" \"string sensor\" \"{sensor}\" WorldBegin Shape \"sphere\"");
+        super::parse(std::path::Path::new("scene.pbrt"), &text).map_err(|e| e.to_string())
+    };
+    assert!(fault("cie1931").is_ok());
+    let canon = fault("canon_eos_5d").unwrap_err();
+    assert!(canon.contains("is not part of tyndall") && canon.contains("may not be passed on"), "{canon}");
+    let misspelt = fault("cie1391").unwrap_err();
+    assert!(misspelt.contains("there is no sensor") && misspelt.contains("cie1931"), "{misspelt}");
 }

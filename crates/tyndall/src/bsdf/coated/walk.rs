@@ -5,7 +5,7 @@
 use super::{Coated, top::Top};
 use crate::bsdf::{Bsdf, BsdfSample, Conductor, ScatterKind};
 use crate::math::{Vec2, Vec3, fast};
-use crate::phase::{Phase, deflect};
+use crate::phase::{HenyeyGreenstein, deflect};
 use crate::sampling::Rng;
 use crate::spectrum::Lanes;
 
@@ -18,7 +18,7 @@ pub(super) struct Layers<'a> {
     pub(super) top: Top,
     base: Bsdf<'static>,
     /// How the coat scatters; `None` if it only absorbs.
-    phase: Option<Phase>,
+    phase: Option<HenyeyGreenstein>,
 }
 
 /// Random numbers, the first two of which may be given: better ones.
@@ -46,7 +46,7 @@ enum Met {
     Top,
     Base,
     /// Something that scatters with this phase function.
-    Particle(Phase),
+    Particle(HenyeyGreenstein),
 }
 
 /// A direction that scattering took.
@@ -60,7 +60,7 @@ struct Turn {
 impl<'a> Layers<'a> {
     pub(super) fn of(model: &'a Coated) -> Self {
         let clear = model.albedo.is_zero();
-        let phase = if clear { None } else { Phase::henyey_greenstein(model.g).ok() };
+        let phase = if clear { None } else { HenyeyGreenstein::new(model.g).ok() };
         Self { model, top: Top::of(model), base: model.base.bsdf(), phase }
     }
 
@@ -124,7 +124,15 @@ impl<'a> Layers<'a> {
 
     /// Neither a smooth top nor a polished metal can be joined with anything: what a particle scatters along `out`, and to
     /// its mirror image below, goes on between them to and fro, of which the sum is a geometric series.
-    fn between_mirrors(&self, phase: Phase, metal: &Conductor, top: f32, out: Vec3, at: &At, left: u16) -> Lanes {
+    fn between_mirrors(
+        &self,
+        phase: HenyeyGreenstein,
+        metal: &Conductor,
+        top: f32,
+        out: Vec3,
+        at: &At,
+        left: u16,
+    ) -> Lanes {
         let across = attenuation(self.model.thickness, out);
         let base = metal.reflected(out.z);
         let series = |reflections: u16| {

@@ -7,6 +7,8 @@
 //!
 //! Lights that are infinitely far away stand beside the tree: what they do is the same everywhere.
 
+mod build;
+
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x8};
 
@@ -23,9 +25,6 @@ const SLACK: f32 = 1e-3;
 const LEAST_COSINE: f32 = 1e-2;
 /// The least share of the lights at infinity, and of all others, where there are both: neither is known well.
 const LEAST_SHARE: f64 = 0.125;
-/// From this depth on ranges are halved, so that no tree is deep.
-const MAX_UNEVEN_DEPTH: u32 = 24;
-const BUCKETS: usize = 16;
 
 /// Eight groups of lights, side by side so that they are weighed together.
 #[derive(Debug, Clone)]
@@ -177,38 +176,11 @@ impl Hierarchy {
             Some(infinite) => (near / (near + infinite.total)).clamp(LEAST_SHARE, 1.0 - LEAST_SHARE),
         }
     }
-
-    /// Splits ranges of `leaves`, the costliest first, until a node has eight children; then does the same with each.
-    fn build(&mut self, leaves: &mut [(LightBounds, LightId)]) {
-        if leaves.is_empty() {
-            return;
-        }
-        let mut stack = vec![(0..leaves.len(), None, 0)];
-        while let Some((range, parent, depth)) = stack.pop() {
-            let index = self.nodes.len() as u32;
-            if let Some(Place { node, slot }) = parent {
-                self.nodes[node as usize].child[slot as usize] = Child::Node(index);
-            }
-            let mut node = Node::empty(parent);
-            for (slot, (range, bounds)) in eight_ranges(leaves, range, depth).into_iter().enumerate() {
-                let place = Place { node: index, slot: slot as u32 };
-                node.set(slot, &bounds);
-                if range.len() == 1 {
-                    let id = leaves[range.start].1;
-                    node.child[slot] = Child::Light(id);
-                    self.homes[id.0 as usize] = Home::Tree(place);
-                } else {
-                    stack.push((range, Some(place), depth + 1));
-                }
-            }
-            self.nodes.push(node);
-        }
-    }
 }
 
 impl Infinite {
     fn of(ids: Vec<LightId>, lights: &[Light]) -> Option<Self> {
-        let weights: Vec<f64> = ids.iter().map(|id| f64::from(lights[id.0 as usize].importance(Vec3::ZERO))).collect();
+        let weights: Vec<f64> = ids.iter().map(|id| f64::from(lights[id.0 as usize].importance_at_large())).collect();
         let total: f64 = weights.iter().sum();
         // A colour may shine without luminance: everyone keeps a share of the mean.
         let least = 1e-6 * total / weights.len().max(1) as f64 + f64::MIN_POSITIVE;
@@ -324,83 +296,4 @@ fn with_more_bits(u: f32, p: Vec3) -> f64 {
     let word = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
     let bits = mix64(mix64(word(p.x, p.y)) ^ word(p.z, u)) >> 35;
     (f64::from(u) + bits as f64 * (-53f64).exp2()).min(1.0 - f64::EPSILON)
-}
-
-type Range = std::ops::Range<usize>;
-
-/// Up to eight parts of a range, with what bounds them.
-fn eight_ranges(leaves: &mut [(LightBounds, LightId)], range: Range, depth: u32) -> Vec<(Range, LightBounds)> {
-    let mut parts = vec![(range.clone(), bounds_of(&leaves[range]))];
-    while parts.len() < WIDTH {
-        let splittable = parts.iter().enumerate().filter(|(_, (range, _))| range.len() > 1);
-        let costliest = splittable.max_by(|a, b| a.1.1.cost().total_cmp(&b.1.1.cost()));
-        let Some((index, _)) = costliest else { break };
-        let (range, _) = parts.swap_remove(index);
-        let middle = range.start + split(&mut leaves[range.clone()], depth);
-        for part in [range.start..middle, middle..range.end] {
-            let bounds = bounds_of(&leaves[part.clone()]);
-            parts.push((part, bounds));
-        }
-    }
-    // In the order of the leaves, which are near in space where they are near in order: stratified numbers stay so.
-    parts.sort_unstable_by_key(|(range, _)| range.start);
-    parts
-}
-
-/// The bounds of a range that is not empty.
-fn bounds_of(leaves: &[(LightBounds, LightId)]) -> LightBounds {
-    leaves[1..].iter().fold(leaves[0].0, |all, (bounds, _)| all.union(*bounds))
-}
-
-/// Sorts leaves into two parts that are not empty, along the longest side of the box of their middles, where the sum of
-/// the costs is least; where there is nothing to choose, halves them.
-fn split(leaves: &mut [(LightBounds, LightId)], depth: u32) -> usize {
-    let half = leaves.len() / 2;
-    let middles = crate::math::Bounds::of(leaves.iter().map(|(b, _)| b.bounds.centre()));
-    let extent = middles.extent();
-    let axis = extent.max_position();
-    let place = |b: &LightBounds| (b.bounds.centre()[axis] - middles.min[axis]) / extent[axis];
-    if extent[axis] <= 0.0 {
-        return half;
-    }
-    if depth > MAX_UNEVEN_DEPTH || !extent[axis].is_finite() {
-        leaves
-            .select_nth_unstable_by(half, |(a, _), (b, _)| a.bounds.centre()[axis].total_cmp(&b.bounds.centre()[axis]));
-        return half;
-    }
-    let bucket = |b: &LightBounds| ((place(b) * BUCKETS as f32) as usize).min(BUCKETS - 1);
-    let mut buckets: [Option<LightBounds>; BUCKETS] = [None; BUCKETS];
-    for (bounds, _) in leaves.iter() {
-        join(&mut buckets[bucket(bounds)], Some(*bounds));
-    }
-    let mut right = [None; BUCKETS];
-    (1..BUCKETS).rev().fold(None, |mut sum, i| {
-        join(&mut sum, buckets[i]);
-        right[i] = sum;
-        sum
-    });
-    // The first bucket and the last are never empty.
-    let (mut left, mut best) = (buckets[0], (f32::INFINITY, 1));
-    for i in 1..BUCKETS {
-        let cost = left.map_or(0.0, |b| b.cost()) + right[i].map_or(0.0, |b: LightBounds| b.cost());
-        if cost < best.0 {
-            best = (cost, i);
-        }
-        join(&mut left, buckets[i]);
-    }
-    let mut middle = 0;
-    for i in 0..leaves.len() {
-        if bucket(&leaves[i].0) < best.1 {
-            leaves.swap(i, middle);
-            middle += 1;
-        }
-    }
-    middle
-}
-
-fn join(sum: &mut Option<LightBounds>, more: Option<LightBounds>) {
-    *sum = match (*sum, more) {
-        (Some(a), Some(b)) => Some(a.union(b)),
-        (a, b) => a.or(b),
-    };
 }
