@@ -50,9 +50,10 @@ pub fn parse(bytes: &[u8]) -> Result<Parts, String> {
         Block { shape, values } if shape.len() == 1 => Ok(values),
         _ => Err(format!("its block \"{name}\" is no list")),
     };
-    let (spectra, channels) = match entries.contains_key("wavelengths") {
-        true => (block("spectra")?, Channels::Wavelengths(list("wavelengths")?)),
-        false => (block("rgb")?, Channels::Rgb),
+    let (spectra, channels) = if entries.contains_key("wavelengths") {
+        (block("spectra")?, Channels::Wavelengths(list("wavelengths")?))
+    } else {
+        (block("rgb")?, Channels::Rgb)
     };
     let jacobian = entries.get("jacobian").filter(|e| e.kind == BYTES).and_then(|e| e.data.first());
     Ok(Parts {
@@ -116,6 +117,8 @@ fn array<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N], String> {
 
 #[cfg(test)]
 mod tests {
+    use tyndall::{bsdf::measured::Tables, spectrum::ColorMode};
+
     use super::*;
 
     fn file(blocks: &[(&str, u8, &[usize], Vec<u8>)]) -> Vec<u8> {
@@ -133,7 +136,9 @@ mod tests {
             shape.iter().for_each(|n| bytes.extend((*n as u64).to_le_bytes()));
             place += data.len();
         }
-        blocks.iter().for_each(|(_, _, _, data)| bytes.extend(data));
+        for (_, _, _, data) in blocks {
+            bytes.extend(data);
+        }
         bytes
     }
 
@@ -174,7 +179,7 @@ mod tests {
             for byte in [0, 1, 10, 127, 255] {
                 let mut changed = whole.clone();
                 changed[at] = byte;
-                let _ = parse(&changed).map(|parts| tyndall::bsdf::measured::Tables::new(parts, Default::default()));
+                let _ = parse(&changed).map(|parts| Tables::new(parts, ColorMode::Rgb));
             }
         }
         let large = file(&[("theta_i", SINGLE, &[usize::MAX, usize::MAX], Vec::new())]);

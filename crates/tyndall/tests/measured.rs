@@ -220,6 +220,9 @@ fn tables_that_make_no_sense_are_refused() {
     assert_eq!(fault(|p| p.visible.values[3] = -1.0), Some(GridError::Value.into()));
     assert_eq!(fault(|p| p.luminance.values.fill(0.0)), Some(GridError::Empty.into()));
     assert_eq!(fault(|p| p.spectra.shape = vec![1, 3, 0, 8, 8]), Some(GridError::Shape.into()));
+    let endless = Block { shape: vec![0, 1, 3, usize::MAX, usize::MAX], values: Vec::new() };
+    let parts = Parts { spectra: endless, ..plain() };
+    assert_eq!(Tables::new(parts, ColorMode::Rgb).err(), Some(GridError::Shape.into()));
     assert_eq!(fault(|p| p.visible.shape = vec![usize::MAX; 4]), Some(GridError::Shape.into()));
     assert_eq!(fault(|p| p.phi = vec![0.0, 0.1, 0.2]), Some(TablesError::Azimuths));
 }

@@ -39,9 +39,9 @@ pub enum CoatedBase {
     /// A metal.
     Metal {
         /// How it reflects where there is no coat.
-        metal: Metal,
+        metal: Box<Metal>,
         /// Its microfacets, after Trowbridge and Reitz, where it is rough.
-        alpha: Roughness,
+        alpha: Box<Roughness>,
     },
 }
 

@@ -207,16 +207,13 @@ impl<'a> Layers<'a> {
 
     /// Scatters; `None` if there is nothing left, or nowhere to go.
     fn turn(&self, met: Met, at: &At, numbers: &mut Numbers) -> Option<Turn> {
-        let turn = match met {
-            Met::Particle(phase) => {
-                let u = numbers.next_2d();
-                let cos = phase.sample(u.x);
-                Turn { dir: deflect(at.dir, cos, u.y), weight: self.model.albedo, pdf: Some(phase.eval(cos)) }
-            }
-            _ => {
-                let s = self.base.sample(-at.dir, 0.0, numbers.next_2d())?;
-                Turn { dir: s.wi, weight: s.weight, pdf: (!s.specular).then_some(s.pdf) }
-            }
+        let turn = if let Met::Particle(phase) = met {
+            let u = numbers.next_2d();
+            let cos = phase.sample(u.x);
+            Turn { dir: deflect(at.dir, cos, u.y), weight: self.model.albedo, pdf: Some(phase.eval(cos)) }
+        } else {
+            let s = self.base.sample(-at.dir, 0.0, numbers.next_2d())?;
+            Turn { dir: s.wi, weight: s.weight, pdf: (!s.specular).then_some(s.pdf) }
         };
         (turn.dir.z != 0.0).then_some(turn)
     }

@@ -103,7 +103,9 @@ impl Grid {
             if !(total > 0.0 && total.is_finite()) {
                 return Err(GridError::Empty);
             }
-            slice.iter_mut().for_each(|v| *v = (f64::from(*v) / total) as f32);
+            for value in slice.iter_mut() {
+                *value = (f64::from(*value) / total) as f32;
+            }
             grid.rows.extend(rows.iter().map(|v| (v / total) as f32));
             grid.columns.extend(columns.iter().map(|v| (v / total) as f32));
         }

@@ -130,12 +130,13 @@ fn rgb_of_wavelengths(lambda: &[f32]) -> Result<Vec<[f32; 3]>, GridError> {
 /// Each place of the third dimension of a block becomes a weighted sum over the old ones.
 fn mixed(block: &Block, mix: &[Vec<f32>]) -> Result<Block, GridError> {
     let [phi, theta, channels, height, width] = block.shape[..] else { return Err(GridError::Shape) };
-    let size = height.checked_mul(width).filter(|size| *size > 0).ok_or(GridError::Shape)?;
-    if mix.iter().any(|weights| weights.len() != channels) || block.values.len() % (channels * size).max(1) != 0 {
+    let size = height.saturating_mul(width).max(1);
+    let each = channels.checked_mul(size).filter(|each| *each > 0).ok_or(GridError::Shape)?;
+    if mix.iter().any(|weights| weights.len() != channels) || !block.values.len().is_multiple_of(each) {
         return Err(GridError::Shape);
     }
-    let mut values = Vec::with_capacity(block.values.len() / channels.max(1) * mix.len());
-    for view in block.values.chunks_exact((channels * size).max(1)) {
+    let mut values = Vec::with_capacity(block.values.len() / channels * mix.len());
+    for view in block.values.chunks_exact(each) {
         for weights in mix {
             let at = |i: usize| view[i..].iter().step_by(size).zip(weights).map(|(v, w)| v * w).sum::<f32>();
             values.extend((0..size).map(at));
