@@ -22,6 +22,8 @@ pub(crate) enum Command {
     Render(Box<RenderOptions>),
     /// Compare two images: error measures, a z-test from their standard errors, a difference image
     Compare(CompareOptions),
+    /// Write a scene in the other scene language: Mitsuba's as pbrt's, pbrt's as Mitsuba's
+    Convert(ConvertOptions),
     /// Render the lecture's eight estimators side by side: images, contact sheet, plot, table
     Lecture(LectureOptions),
     /// Tell what is in a scene, without rendering it
@@ -160,6 +162,34 @@ pub(crate) struct CompareOptions {
     /// Write all numbers as JSON to a file, or to standard output with -
     #[arg(long, value_name = "FILE|-")]
     pub(crate) json: Option<PathBuf>,
+}
+
+/// Writes a scene in the other scene language.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tyndall convert scene.xml scene.pbrt              from Mitsuba 3 to pbrt-v4
+  tyndall convert scene.pbrt scene.xml              and back
+  tyndall convert scene.xml out/scene.pbrt          meshes and pictures stay where they are, and are found there
+  tyndall convert scene.xml small.pbrt -D res=64    set the scene's $parameters on the way
+  tyndall convert old.pbrt new.pbrt                 the same language: what is said, in one file, in order
+
+Includes and $parameters are carried out, defaults are left out, names are kept, and every number reads back to the same
+bits: where both languages have the words, `tyndall render` makes the same image of both files, bit for bit. What the other
+language has no word for is an error that shows the place; with --lenient it is left out, with a warning here and a comment
+in the new file. Warnings alone tell of words that mean something slightly different there. Meshes that stand in the scene
+itself and that the other language cannot say are written beside the new file as SCENE-NAME.ply. A file that the scene is read
+from is never written. Exit status: 0 done, 2 failed, and then nothing is written.
+
+The words and what becomes of them: docs/src/convert.md.")]
+pub(crate) struct ConvertOptions {
+    #[command(flatten)]
+    pub(crate) input: SceneOptions,
+    /// The new file: .pbrt (pbrt-v4) or .xml (Mitsuba 3); one that is there is replaced
+    pub(crate) output: PathBuf,
+    /// Say nothing but errors and warnings
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
 }
 
 /// Renders the lecture's estimators side by side.

@@ -31,6 +31,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Render(options) => commands::render::run(&options),
         Command::Compare(options) => commands::compare::run(&options),
+        Command::Convert(options) => commands::convert::run(&options),
         Command::Lecture(options) => commands::lecture::run(&options),
         Command::Info(options) => commands::info::run(&options),
         Command::Lab(instrument) => commands::lab::run(&instrument),

@@ -285,3 +285,46 @@ fn the_lecture_leaves_images_a_contact_sheet_a_plot_and_a_table() {
     let estimate = exr::read(&desk.path("slides/volume-version-0.75-equal-time.exr")).unwrap();
     assert_eq!(reference.mean.len(), estimate.mean.len());
 }
+
+/// The ball's filter is the one that pbrt takes by default, which Mitsuba does not have: with another one it is the same image.
+#[test]
+fn a_scene_in_the_other_language_is_the_same_image() {
+    let desk = Desk::new("convert");
+    fs::write(desk.0.join("ball.pbrt"), format!("PixelFilter \"box\"\n{SCENE}")).unwrap();
+    for arguments in ["convert ball.pbrt ball.xml", "convert ball.xml back.pbrt"] {
+        let output = desk.tyndall(arguments);
+        assert!(output.status.success(), "{arguments}: {}", err(&output));
+    }
+    let first = desk.render("--quiet", "first.exr");
+    for scene in ["ball.xml", "back.pbrt"] {
+        let output = desk.tyndall(&format!("render {scene} --quiet -o other.exr"));
+        assert!(output.status.success(), "{scene}: {}", err(&output));
+        let other = exr::read(&desk.0.join("other.exr")).unwrap();
+        assert_eq!(first.mean, other.mean, "{scene}");
+    }
+}
+
+#[test]
+fn what_the_other_language_has_no_word_for_is_refused_where_it_stands_or_left_out_with_a_comment() {
+    let desk = Desk::new("convert-lenient");
+    let scene = SCENE.replace("Camera \"perspective\" \"float fov\" 40", "PixelFilter \"sinc\"");
+    fs::write(desk.0.join("ball.pbrt"), scene).unwrap();
+    let refused = desk.tyndall("convert ball.pbrt ball.xml");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(err(&refused).contains("Mitsuba has no word for a filter of these radii"), "{}", err(&refused));
+    assert!(err(&refused).contains("ball.pbrt:2:"), "{}", err(&refused));
+    assert!(!desk.0.join("ball.xml").exists());
+    assert!(desk.tyndall("convert ball.pbrt ball.xml --lenient").status.success());
+    let text = fs::read_to_string(desk.0.join("ball.xml")).unwrap();
+    assert!(text.starts_with("<!-- From ball.pbrt") && text.contains("no word for a filter of these radii"), "{text}");
+}
+
+#[test]
+fn a_scene_is_never_written_over_itself() {
+    let desk = Desk::new("convert-itself");
+    let before = fs::read(desk.0.join("ball.pbrt")).unwrap();
+    let refused = desk.tyndall("convert ball.pbrt ./ball.pbrt");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(err(&refused).contains("is part of the scene that is read"), "{}", err(&refused));
+    assert_eq!(fs::read(desk.0.join("ball.pbrt")).unwrap(), before);
+}

@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod mitsuba;
 pub mod pbrt;
 pub mod source;
+pub mod write;
 
 use std::path::Path;
 

@@ -233,9 +233,9 @@ fn panes_that_are_passed_straight_count_for_a_limit_or_not() {
         let m = world.measure(&limited, 400_000);
         let name = format!("{counted:?} up to {max_depth}");
         if expected == 0.0 {
-            assert_eq!(m.mean, [0.0; 3], "{name}")
+            assert_eq!(m.mean, [0.0; 3], "{name}");
         } else {
-            assert_mean(&name, &m, [expected; 3], 2e-3)
+            assert_mean(&name, &m, [expected; 3], 2e-3);
         }
     }
 }

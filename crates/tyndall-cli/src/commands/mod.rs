@@ -1,6 +1,7 @@
 //! What the program can do, a page each.
 
 pub(crate) mod compare;
+pub(crate) mod convert;
 pub(crate) mod info;
 pub(crate) mod lab;
 pub(crate) mod lecture;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::{DMat4, DVec3};
 use tyndall::{
     camera::{
         Batch, Camera, CameraModel, Distant, Element, IrradianceMeter, LensSystem, Orthographic, Perspective,
@@ -58,7 +59,14 @@ impl<'a> Builder<'a> {
                 window: window?,
                 lens: lens.map(|lens| ThinLens { radius: lens.radius as f32, focus: lens.focus as f32 }),
             }),
-            CameraKind::Orthographic { .. } => CameraModel::Orthographic(Orthographic { window: window? }),
+            CameraKind::Orthographic { .. } => {
+                // In double precision: a picture is the same whether its window or its space is wider.
+                let w = camera.window(film.width, film.height)?;
+                let half = if w.left == -w.right { w.right } else { 1.0 };
+                to_world *= DMat4::from_scale(DVec3::new(half, half, 1.0));
+                let window = [w.left, w.right, w.bottom, w.top].map(|v| (v / half) as f32);
+                CameraModel::Orthographic(Orthographic { window })
+            }
             CameraKind::Spherical { mapping } => CameraModel::Spherical(Spherical {
                 mapping: match mapping {
                     SphereMapping::EqualArea => SphericalMapping::EqualArea,
@@ -68,7 +76,7 @@ impl<'a> Builder<'a> {
             CameraKind::Realistic(desc) => CameraModel::Realistic(Box::new(self.realistic(desc, film)?)),
             CameraKind::RadianceMeter => CameraModel::RadianceMeter(RadianceMeter),
             CameraKind::IrradianceMeter { shape } => {
-                to_world = glam::DMat4::IDENTITY;
+                to_world = DMat4::IDENTITY;
                 let pieces = shapes.meters.get(shape).cloned()?;
                 match Surface::new(pieces) {
                     Some(surface) => CameraModel::IrradianceMeter(IrradianceMeter { surface }),
@@ -90,7 +98,7 @@ impl<'a> Builder<'a> {
                 CameraModel::Distant(Distant { centre, radius, target })
             }
             CameraKind::Batch(cameras) => {
-                to_world = glam::DMat4::IDENTITY;
+                to_world = DMat4::IDENTITY;
                 CameraModel::Batch(self.batch(camera, cameras, film, shapes)?)
             }
         };

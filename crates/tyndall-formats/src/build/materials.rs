@@ -147,7 +147,7 @@ impl Builder<'_> {
         let base = match &desc.base {
             BaseDesc::Diffuse(reflectance) => CoatedBase::Diffuse(self.texture(reflectance, Measure::Share)?),
             BaseDesc::Conductor { optics, roughness } => {
-                CoatedBase::Metal { metal: Box::new(self.metal(optics)?), alpha: Box::new(self.roughness(roughness)?) }
+                CoatedBase::Metal { metal: self.metal(optics)?, alpha: Box::new(self.roughness(roughness)?) }
             }
         };
         Some(CoatedMaterial {

@@ -5,11 +5,14 @@ use tyndall::{
     phase::{Isotropic, Phase, Rayleigh},
     spectrum::{Role, Sampled, Spectrum},
 };
-use tyndall_optics::{half_space::HalfSpace, measured};
+use tyndall_optics::{
+    half_space::HalfSpace,
+    measured::{self, Anisotropic},
+};
 
 use super::{Builder, spectra::Measure};
 use crate::{
-    desc::{Coefficients, MediumDesc, PhaseDesc, SpectrumDesc},
+    desc::{Coefficients, LengthUnit, MediumDesc, PhaseDesc, SpectrumDesc},
     error::SceneError,
     source::Spanned,
 };
@@ -108,10 +111,7 @@ impl Builder<'_> {
     /// scattered light, `Σ σ_s g / Σ σ_s` over red, green and blue.
     fn measured_phase(&mut self, name: &Spanned<String>) -> Option<Phase> {
         let full = measured::named(&name.value)?.full?;
-        let scattered: f32 = full.sigma_s.iter().sum();
-        let forward: f32 = full.sigma_s.iter().zip(full.g).map(|(s, g)| s * g).sum();
-        let g = if scattered > 0.0 { forward / scattered } else { 0.0 };
-        self.phase(&PhaseDesc::HenyeyGreenstein { g: Spanned::new(f64::from(g), name.span) })
+        self.phase(&PhaseDesc::HenyeyGreenstein { g: Spanned::new(mean_cosine(full), name.span) })
     }
 
     /// `σ_s = albedo · σ_t`, `σ_a = σ_t − σ_s`, channel by channel.
@@ -122,12 +122,10 @@ impl Builder<'_> {
     ) -> Option<(Spectrum, Spectrum)> {
         let extinction = self.spectrum(sigma_t, Measure::Coefficient)?;
         let share = self.spectrum(albedo, Measure::Share)?;
-        let (Some(t), Some(a)) = (channels(&sigma_t.value), channels(&albedo.value)) else {
+        let Some([sigma_a, sigma_s]) = split(&sigma_t.value, &albedo.value) else {
             let [t, a] = [extinction, share];
             return Some((product(&t, |l| 1.0 - a.at(l), a.rgb().map(|a| 1.0 - a)), product(&t, |l| a.at(l), a.rgb())));
         };
-        let sigma_s: [f64; 3] = std::array::from_fn(|c| t[c] * a[c]);
-        let sigma_a: [f64; 3] = std::array::from_fn(|c| t[c] * (1.0 - a[c]));
         Some((grey_or_rgb(sigma_a), grey_or_rgb(sigma_s)))
     }
 
@@ -156,7 +154,41 @@ impl Builder<'_> {
     }
 }
 
-fn channels(spectrum: &SpectrumDesc) -> Option<[f64; 3]> {
+/// The mean cosine of the light that full scattering sends on.
+fn mean_cosine(full: Anisotropic) -> f64 {
+    let scattered: f32 = full.sigma_s.iter().sum();
+    let forward: f32 = full.sigma_s.iter().zip(full.g).map(|(s, g)| s * g).sum();
+    f64::from(if scattered > 0.0 { forward / scattered } else { 0.0 })
+}
+
+/// Measured coefficients in numbers, for whoever writes them elsewhere.
+pub(crate) struct Numbers {
+    /// Absorption and scattering \[1/scene unit\].
+    pub(crate) sigma: [[f32; 3]; 2],
+    /// The mean cosine that belongs to them, if scattering is not the reduced one.
+    pub(crate) g: Option<f64>,
+}
+
+/// The numbers of a [`Coefficients::Preset`] for a scene unit of so many millimetres.
+pub(crate) fn numbers_of(name: &str, reduced: bool, millimetres: f64) -> Option<Numbers> {
+    let m = measured::named(name)?;
+    let full = if reduced { None } else { Some(m.full?) };
+    let sigma = [m.sigma_a, full.map_or(m.sigma_s_reduced, |full| full.sigma_s)];
+    Some(Numbers { sigma: sigma.map(|rgb| rgb.map(|v| v * millimetres as f32)), g: full.map(mean_cosine) })
+}
+
+/// `σ_a` and `σ_s` of an extinction and an albedo that are numbers or colours.
+pub(crate) fn split(sigma_t: &SpectrumDesc, albedo: &SpectrumDesc) -> Option<[[f64; 3]; 2]> {
+    let (t, a) = channels(sigma_t).zip(channels(albedo))?;
+    Some([std::array::from_fn(|c| t[c] * (1.0 - a[c])), std::array::from_fn(|c| t[c] * a[c])])
+}
+
+/// Coefficients per millimetre, as colours per scene unit.
+pub(crate) fn per_unit(spectrum: &SpectrumDesc, unit: LengthUnit) -> Option<[f64; 3]> {
+    channels(spectrum).map(|sigma| sigma.map(|v| f64::from(v as f32 * unit.millimetres() as f32)))
+}
+
+pub(crate) fn channels(spectrum: &SpectrumDesc) -> Option<[f64; 3]> {
     match spectrum {
         SpectrumDesc::Constant(v) => Some([*v; 3]),
         SpectrumDesc::Rgb(rgb) => Some(*rgb),

@@ -5,12 +5,12 @@ mod emitters;
 mod lights;
 pub(crate) mod made;
 mod materials;
-mod media;
+pub(crate) mod media;
 mod meshes;
 mod painted;
 mod principled;
-mod shapes;
-mod spectra;
+pub(crate) mod shapes;
+pub(crate) mod spectra;
 mod textures;
 
 #[cfg(test)]

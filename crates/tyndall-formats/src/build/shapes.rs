@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use glam::{DMat4, DVec3};
 use tyndall::{
     light::{EmitterShape, Light},
     math::{Transform, Vec2, Vec3},
@@ -139,12 +140,20 @@ impl<'a> Builder<'a> {
                 vec![builder.add_sphere(sphere, &transform, reversed)]
             }
             ShapeKind::Disk { height, radius, inner_radius, turn, mapping } => {
-                let disk = Disk::new(*height as f32, *radius as f32, *inner_radius as f32);
-                vec![builder.add_disk(disk.cut(*turn).mapped(*mapping), &transform, reversed)]
+                // Height and radius in double precision: the disk is the same whether a number or a matrix says them.
+                let unit = DMat4::from_translation(DVec3::new(0.0, 0.0, *height))
+                    * DMat4::from_scale(DVec3::new(*radius, *radius, 1.0));
+                let disk = Disk::new(0.0, 1.0, (inner_radius / radius) as f32).cut(*turn).mapped(*mapping);
+                let transform = self.transform(desc.to_world * unit, desc.span)?;
+                vec![gathered.builder.add_disk(disk, &transform, reversed)]
             }
             ShapeKind::Cylinder { radius, heights, turn } => {
-                let cylinder = Cylinder::new(*radius as f32, heights.map(|z| z as f32), *turn);
-                vec![builder.add_cylinder(cylinder, &transform, reversed)]
+                // From 0 upwards: it is the same whether a number or a matrix says where it begins.
+                let [low, high] = *heights;
+                let cylinder = Cylinder::new(*radius as f32, [0.0, (high - low) as f32], *turn);
+                let up = DMat4::from_translation(DVec3::new(0.0, 0.0, low));
+                let transform = self.transform(desc.to_world * up, desc.span)?;
+                vec![gathered.builder.add_cylinder(cylinder, &transform, reversed)]
             }
             ShapeKind::Rectangle => vec![builder.add_mesh(rectangle(), &transform, reversed)],
             ShapeKind::Cube => vec![builder.add_mesh(cube(), &transform, reversed)],
@@ -275,20 +284,7 @@ impl<'a> Builder<'a> {
         flip_tex_coords: bool,
     ) -> Option<Mesh> {
         match mesh {
-            Ok(mut mesh) => {
-                let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
-                let mut uvs = mesh.uvs.take().unwrap_or_default();
-                if flip_tex_coords {
-                    for uv in &mut uvs {
-                        uv.y = 1.0 - uv.y;
-                    }
-                }
-                let normals = match normals {
-                    Normals::Flat => Vec::new(),
-                    Normals::AsGiven | Normals::Smooth => mesh.normals.take().or(smooth).unwrap_or_default(),
-                };
-                Some(mesh_of(TriangleMesh { normals: Some(normals), uvs: Some(uvs), ..mesh }))
-            }
+            Ok(mesh) => Some(finished(mesh, normals, flip_tex_coords)),
             Err(e) => self.fail(SceneError::at(path.span, e.to_string())),
         }
     }
@@ -313,6 +309,54 @@ impl<'a> Builder<'a> {
         };
         Some(self.meshes.get((path.value.clone(), 0), || read_ply(&path.value)).and_then(displace))
     }
+}
+
+/// The mesh of a file with the normals and texture coordinates that are asked for.
+fn finished(mut mesh: TriangleMesh, normals: Normals, flip_tex_coords: bool) -> Mesh {
+    let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
+    let mut uvs = mesh.uvs.take().unwrap_or_default();
+    if flip_tex_coords {
+        for uv in &mut uvs {
+            uv.y = 1.0 - uv.y;
+        }
+    }
+    let normals = match normals {
+        Normals::Flat => Vec::new(),
+        Normals::AsGiven | Normals::Smooth => mesh.normals.take().or(smooth).unwrap_or_default(),
+    };
+    mesh_of(TriangleMesh { normals: Some(normals), uvs: Some(uvs), ..mesh })
+}
+
+/// The triangles that a shape is made of as it stands, for whoever writes them elsewhere. `None` for what is no mesh, and for
+/// one whose vertices a texture moves.
+pub(crate) fn triangles_of(kind: &ShapeKind) -> Option<Result<Mesh, MeshError>> {
+    let file = |mesh: Result<TriangleMesh, MeshError>, flat, smooth, flip| {
+        mesh.map(|mesh| finished(mesh, Normals::asked(flat, smooth), flip))
+    };
+    Some(match kind {
+        ShapeKind::Rectangle => Ok(rectangle()),
+        ShapeKind::Cube => Ok(cube()),
+        ShapeKind::TriangleMesh(mesh) => Ok(inline_mesh(mesh)),
+        ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement: None } => {
+            file(read_ply(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
+        }
+        ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
+            file(read_obj(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
+        }
+        ShapeKind::Serialized { path, index, face_normals } => {
+            file(read_serialized(&path.value, *index), *face_normals, true, false)
+        }
+        ShapeKind::Subdivision { positions, indices, levels } => {
+            let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();
+            let named = |problem| MeshError { path: "this surface".into(), problem };
+            subdivide(&positions, indices, *levels).map(mesh_of).map_err(named)
+        }
+        ShapeKind::Sphere { .. }
+        | ShapeKind::Disk { .. }
+        | ShapeKind::Cylinder { .. }
+        | ShapeKind::BilinearMesh(_)
+        | ShapeKind::Ply { displacement: Some(_), .. } => return None,
+    })
 }
 
 /// The surface of several objects.
@@ -341,12 +385,12 @@ fn patches_of(patches: &PatchDesc) -> impl Iterator<Item = Patch> {
     patches.indices.iter().map(|corners| Patch::new(corners.map(|i| Vec3::from_array(patches.positions[i as usize]))))
 }
 
-/// The square [−1, 1]² at z = 0, seen from +z.
+/// The square [−1, 1]² at z = 0, seen from +z: as a flat patch with these corners.
 pub(super) fn rectangle() -> Mesh {
     let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
     Mesh {
         positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
-        indices: vec![[0, 1, 2], [2, 3, 0]],
+        indices: vec![[0, 1, 2], [0, 2, 3]],
         normals: Vec::new(),
         uvs: vec![Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 1.0)],
         reversed: false,

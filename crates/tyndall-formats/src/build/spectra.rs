@@ -146,6 +146,23 @@ impl Builder<'_> {
     }
 }
 
+/// The luminance of a light whose spectrum is a table, as it is written.
+pub(crate) fn table_luminance(desc: &SpectrumDesc) -> Option<f32> {
+    let table = match desc {
+        SpectrumDesc::Samples { lambda, values } => Table { lambda: single(lambda), values: single(values) },
+        SpectrumDesc::Named(name) => named(name)?,
+        SpectrumDesc::File(path) => read_spectrum(path).ok()?,
+        SpectrumDesc::Constant(_) | SpectrumDesc::Rgb(_) | SpectrumDesc::Blackbody { .. } => return None,
+    };
+    Sampled::new(&table.lambda, &table.values, Role::Illuminant).ok().map(|s| Spectrum::Sampled(s).luminance())
+}
+
+/// Measured data of a name as wavelengths \[nm\] and values.
+pub(crate) fn named_samples(name: &str) -> Option<(Vec<f64>, Vec<f64>)> {
+    let double = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
+    named(name).map(|table| (double(table.lambda), double(table.values)))
+}
+
 /// Planck's law divided by its maximum.
 fn filter_of(kelvin: f64) -> Spectrum {
     // Wien's displacement law [nm·K].

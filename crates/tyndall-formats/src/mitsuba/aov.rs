@@ -79,6 +79,13 @@ fn difference(recorded: Recorded) -> Option<&'static str> {
     }
 }
 
+/// A layer as `aovs` writes it, if there is a word for it.
+pub(crate) fn word(layer: &LayerKind) -> Option<String> {
+    let (name, _) = layer.channels.first()?.rsplit_once('.')?;
+    let (kind, ..) = KINDS.into_iter().find(|(kind, ..)| self::layer(name, kind).as_ref() == Some(layer))?;
+    Some(format!("{name}:{kind}"))
+}
+
 /// The layer `name` of a known kind, averaged over all samples as in Mitsuba.
 pub(super) fn layer(name: &str, kind: &str) -> Option<LayerKind> {
     let (_, feature, endings) = KINDS.into_iter().find(|(known, ..)| *known == kind)?;

@@ -17,7 +17,7 @@ use crate::error::SceneError;
 use crate::source::Spanned;
 
 /// Refractive indices by name, at 589 nm and room temperature (Hecht, "Optics", 4th ed., as Mitsuba documents them).
-const INDICES: &[(&str, f64)] = &[
+pub(crate) const INDICES: &[(&str, f64)] = &[
     ("vacuum", 1.0),
     ("helium", 1.000036),
     ("hydrogen", 1.000132),

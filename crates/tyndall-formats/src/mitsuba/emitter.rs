@@ -137,7 +137,7 @@ fn placed(
 }
 
 /// Turns +z into this direction.
-fn facing(direction: DVec3) -> DMat4 {
+pub(crate) fn facing(direction: DVec3) -> DMat4 {
     direction.try_normalize().map_or(DMat4::IDENTITY, |d| DMat4::from_quat(DQuat::from_rotation_arc(DVec3::Z, d)))
 }
 

@@ -31,6 +31,11 @@ mod transform;
 mod tree;
 mod words;
 
+pub(crate) use aov::word as layer_word;
+pub(crate) use bsdf::INDICES;
+pub(crate) use emitter::facing;
+pub(crate) use transform::look_at;
+
 use std::path::Path;
 
 use crate::desc::SceneDesc;

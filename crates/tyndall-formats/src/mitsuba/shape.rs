@@ -92,11 +92,13 @@ impl<'t> Builder<'t> {
                     .map(|(name, default)| object.point(name, report).map_or(default, |p| p.value));
                 let radius = object.float("radius", |radius| radius > 0.0, "greater than 0", report);
                 let length = (p1 - p0).length();
-                let Some(along) = (p1 - p0).try_normalize() else {
+                // Divided, not multiplied by the inverse: of an axis along z nothing is rounded.
+                let along = (p1 - p0) / length;
+                if !along.is_finite() {
                     let error = SceneError::at(object.element.span, "the two ends of this cylinder are one point");
                     report.errors.push(error.help("give \"p0\" and \"p1\" that differ"));
                     return None;
-                };
+                }
                 *to_world *= DMat4::from_translation(p0) * DMat4::from_mat3(around(along));
                 let radius = radius.map_or(1.0, |radius| radius.value);
                 ShapeKind::Cylinder { radius, heights: [0.0, length], turn: Turn::FULL }

@@ -26,7 +26,7 @@ fn step_matrix(step: &Element) -> Result<DMat4, SceneError> {
         "translate" => DMat4::from_translation(vector(step, 0.0)?),
         "scale" => DMat4::from_scale(vector(step, 1.0)?),
         "rotate" => rotation(step)?,
-        "lookat" => look_at(step)?,
+        "lookat" => written_look_at(step)?,
         "matrix" => written(step)?,
         other => {
             return Err(SceneError::at(step.span, format!("<{other}> is no step of a transform"))
@@ -48,8 +48,15 @@ fn rotation(step: &Element) -> Result<DMat4, SceneError> {
     Ok(DMat4::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))))
 }
 
-/// +z to the target, +y near `up`, and so +x to the left of one who looks along +z.
-fn look_at(step: &Element) -> Result<DMat4, SceneError> {
+/// +z to the target, +y near `up`, and so +x to the left of one who looks along +z. `None` if they do not span a space.
+pub(crate) fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
+    let dir = (target - origin).try_normalize()?;
+    let left = up.cross(dir).try_normalize()?;
+    let columns = [left, dir.cross(left), dir].map(|axis| axis.extend(0.0));
+    Some(DMat4::from_cols(columns[0], columns[1], columns[2], origin.extend(1.0)))
+}
+
+fn written_look_at(step: &Element) -> Result<DMat4, SceneError> {
     let point = |name| {
         let [x, y, z] = numbers(step.text(name), step.span_of(name))?;
         Ok::<_, SceneError>(DVec3::new(x, y, z))
@@ -60,12 +67,8 @@ fn look_at(step: &Element) -> Result<DMat4, SceneError> {
         .ok_or_else(|| SceneError::at(step.span, "origin and target of the lookat are the same point"))?;
     let up = if step.attribute("up").is_some() { point("up")? } else { DVec3::ZERO };
     let up = if up == DVec3::ZERO { dir.any_orthonormal_vector() } else { up };
-    let left = up
-        .cross(dir)
-        .try_normalize()
-        .ok_or_else(|| SceneError::at(step.span_of("up"), "up is parallel to the line from origin to target"))?;
-    let columns = [left, dir.cross(left), dir].map(|axis| axis.extend(0.0));
-    Ok(DMat4::from_cols(columns[0], columns[1], columns[2], origin.extend(1.0)))
+    look_at(origin, target, up)
+        .ok_or_else(|| SceneError::at(step.span_of("up"), "up is parallel to the line from origin to target"))
 }
 
 /// 16 numbers by rows, or the 9 of the linear part.

@@ -29,7 +29,7 @@ impl CameraDesc {
 
 impl Reader {
     pub(super) fn camera(&mut self, mut s: Statement<'_>) {
-        let to_world = self.state.now.ctm.inverse();
+        let to_world = self.state.now.inverse;
         self.state.name("camera", to_world);
         let name = s.names[0].clone();
         if !CAMERAS.contains(&&*name.value) {

@@ -104,10 +104,10 @@ impl Reader {
         // The file lists a matrix column by column.
         let matrix = || DMat4::from_cols_slice(n);
         match s.word {
-            "ConcatTransform" => self.checked(|r| r.state.concat(matrix(), s.whole)),
-            "Identity" => self.state.now.ctm = DMat4::IDENTITY,
+            "ConcatTransform" => self.checked(|r| r.state.concat(matrix(), matrix().inverse(), s.whole)),
+            "Identity" => (self.state.now.ctm, self.state.now.inverse) = (DMat4::IDENTITY, DMat4::IDENTITY),
             "LookAt" => match look_at(vec(0), vec(3), vec(6)) {
-                Some(matrix) => self.checked(|r| r.state.concat(matrix, s.whole)),
+                Some(inverse) => self.checked(|r| r.state.concat(inverse.inverse(), inverse, s.whole)),
                 None => self.errors.push(
                     SceneError::at(s.whole, "this LookAt has no direction")
                         .help("eye and target must differ, and up must not point along the view"),
@@ -116,16 +116,22 @@ impl Reader {
             "Rotate" => match vec(1).try_normalize() {
                 Some(axis) => {
                     let rotation = DMat4::from_axis_angle(axis, n[0].to_radians());
-                    self.checked(|r| r.state.concat(rotation, s.whole));
+                    self.checked(|r| r.state.concat(rotation, rotation.transpose(), s.whole));
                 }
                 None => self.errors.push(
                     SceneError::at(s.whole, "this axis of rotation has no direction")
                         .help("Rotate takes an angle in degrees and then an axis: Rotate 90 0 1 0"),
                 ),
             },
-            "Scale" => self.checked(|r| r.state.concat(DMat4::from_scale(vec(0)), s.whole)),
-            "Transform" => self.checked(|r| r.state.set(matrix(), s.whole)),
-            "Translate" => self.checked(|r| r.state.concat(DMat4::from_translation(vec(0)), s.whole)),
+            "Scale" => {
+                let [scale, inverse] = [vec(0), vec(0).recip()].map(DMat4::from_scale);
+                self.checked(|r| r.state.concat(scale, inverse, s.whole));
+            }
+            "Transform" => self.checked(|r| r.state.set(matrix(), matrix().inverse(), s.whole)),
+            "Translate" => {
+                let [there, back] = [vec(0), -vec(0)].map(DMat4::from_translation);
+                self.checked(|r| r.state.concat(there, back, s.whole));
+            }
             other => self.errors.push(SceneError::not_yet(s.span, format!("\"{other}\" is not supported yet"))),
         }
     }
@@ -160,7 +166,7 @@ impl Reader {
             return self.errors.push(error.related(first, "first here"));
         }
         self.settings.world = Some(span);
-        self.state.now.ctm = DMat4::IDENTITY;
+        (self.state.now.ctm, self.state.now.inverse) = (DMat4::IDENTITY, DMat4::IDENTITY);
         self.state.name("world", DMat4::IDENTITY);
     }
 

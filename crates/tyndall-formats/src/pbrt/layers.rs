@@ -22,6 +22,11 @@ pub(super) fn gbuffer(p: &mut Params) -> Vec<LayerKind> {
         }
         _ => Space::Camera,
     };
+    in_space(space)
+}
+
+/// The layers of a `gbuffer` in a space.
+pub(crate) fn in_space(space: Space) -> Vec<LayerKind> {
     let layer = |feature, average, channels: &[&str]| LayerKind {
         recorded: Recorded::Surface(feature),
         average,

@@ -16,7 +16,7 @@ mod camera;
 mod color_space;
 mod directives;
 mod film;
-mod layers;
+pub(crate) mod layers;
 mod lexer;
 mod lights;
 mod materials;
@@ -27,7 +27,7 @@ mod params;
 mod parser;
 mod settings;
 mod shapes;
-mod state;
+pub(crate) mod state;
 mod subsurface;
 #[cfg(test)]
 mod tests;

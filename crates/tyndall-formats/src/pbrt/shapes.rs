@@ -60,7 +60,8 @@ impl Reader {
             material,
             opacity: None,
             emission: now.area_light.as_deref().cloned(),
-            interface: now.interface,
+            // What is the same on both sides is no boundary: empty space there leaves the medium as it is.
+            interface: now.interface.filter(|i| (i.inside, i.outside) != (None, None)),
             priority: None,
         }
     }

@@ -20,6 +20,8 @@ const MAX_DEPTH: usize = 1_000;
 pub(super) struct Graphics {
     /// Current transformation: object to world, and before `WorldBegin` world to camera.
     pub(super) ctm: DMat4,
+    /// Its inverse, made of the inverses of its parts: a camera's `LookAt` is where it says to the last bit.
+    pub(super) inverse: DMat4,
     pub(super) reverse_orientation: bool,
     /// `None` until a material is set.
     pub(super) material: Option<Spanned<MaterialId>>,
@@ -105,25 +107,26 @@ impl State {
         self.saved.iter().map(|(_, span, _)| *span)
     }
 
-    /// Multiplies the current transformation on the right.
+    /// Multiplies the current transformation on the right by a matrix, whose inverse is the second.
     ///
     /// # Errors
     /// The product is singular or not finite; the transformation stays what it was.
-    pub(super) fn concat(&mut self, matrix: DMat4, span: Span) -> Result<(), SceneError> {
-        self.set(self.now.ctm * matrix, span)
+    pub(super) fn concat(&mut self, matrix: DMat4, inverse: DMat4, span: Span) -> Result<(), SceneError> {
+        self.set(self.now.ctm * matrix, inverse * self.now.inverse, span)
     }
 
     /// Replaces the current transformation.
     ///
     /// # Errors
     /// It is singular or not finite; the transformation stays what it was.
-    pub(super) fn set(&mut self, ctm: DMat4, span: Span) -> Result<(), SceneError> {
+    pub(super) fn set(&mut self, ctm: DMat4, inverse: DMat4, span: Span) -> Result<(), SceneError> {
         // Scale-free: the determinant of a matrix of nanometres is tiny and yet right.
-        if !ctm.is_finite() || ctm.determinant() == 0.0 || !ctm.inverse().is_finite() {
+        let finite = [ctm, inverse, ctm.inverse()].iter().all(DMat4::is_finite);
+        if !finite || ctm.determinant() == 0.0 {
             return Err(SceneError::at(span, "this makes a transformation that cannot be undone")
                 .help("do not scale by 0; the rows of a matrix must be independent"));
         }
-        self.now.ctm = ctm;
+        (self.now.ctm, self.now.inverse) = (ctm, inverse);
         Ok(())
     }
 
@@ -150,20 +153,19 @@ impl State {
             let error = SceneError::at(name.span, format!("there is no coordinate system {}", quote(word)));
             return Err(error.suggest(word, self.coordinate_systems.keys().map(|k| &**k)));
         };
-        self.now.ctm = matrix;
+        (self.now.ctm, self.now.inverse) = (matrix, matrix.inverse());
         Ok(())
     }
 }
 
-/// pbrt's `LookAt`: world to camera, for a camera at `eye` that looks along its +z at `target`, +y as near to `up` as can be
+/// The inverse of pbrt's `LookAt`: camera to world, for a camera at `eye` that looks along its +z at `target`, +y as near to `up` as can be
 /// and +x = up × z. pbrt takes the world for left-handed, so this x points to the right of the image. `None` if the
 /// directions do not span a camera.
-pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
+pub(crate) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
     let z = (target - eye).try_normalize()?;
     let x = up.try_normalize()?.cross(z).try_normalize()?;
     let y = z.cross(x);
-    let to_world = DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), eye.extend(1.0));
-    Some(to_world.inverse())
+    Some(DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), eye.extend(1.0)))
 }
 
 #[cfg(test)]
@@ -173,7 +175,7 @@ mod tests {
     /// The eye maps to the origin, the target to the +z axis at its distance, and a point above to +y.
     #[test]
     fn look_at_puts_the_target_on_the_z_axis_and_up_upwards() {
-        let m = look_at(DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, 13.0), DVec3::Y).unwrap();
+        let m = look_at(DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 2.0, 13.0), DVec3::Y).unwrap().inverse();
         let near = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-12, "{a} {b}");
         near(m.transform_point3(DVec3::new(1.0, 2.0, 3.0)), DVec3::ZERO);
         near(m.transform_point3(DVec3::new(1.0, 2.0, 13.0)), DVec3::new(0.0, 0.0, 10.0));

@@ -91,7 +91,7 @@ impl Reader {
             &defaults,
             &self.dir,
         );
-        let space = Space { from_world: self.state.now.ctm.inverse(), texels };
+        let space = Space { from_world: self.state.now.inverse, texels };
         let kind = if let Some(kind) = space.kind(&class.value, &mut p, &self.textures) {
             self.finish_params(p);
             kind

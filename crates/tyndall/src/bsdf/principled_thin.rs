@@ -170,7 +170,7 @@ impl PrincipledThin<'_> {
             ScatterKind::Reflection if wi.z > 0.0 => self.near(up, wi, &chances)?,
             // A facet whose image does not lie behind it passes nothing: its share is lost.
             ScatterKind::Transmission if wi.z < 0.0 => {
-                let lost = u_lobe < clear_near + clear_far && !self.is_behind(up, wi);
+                let lost = u_lobe < clear_near + clear_far && !is_behind(up, wi);
                 if lost {
                     return None;
                 }
@@ -181,10 +181,10 @@ impl PrincipledThin<'_> {
         let wi = seen_from(wo, wi);
         (pdf > 0.0).then(|| BsdfSample { wi, weight: value / pdf, pdf, kind, specular: false, eta: 1.0 })
     }
+}
 
-    /// Whether `wi` lies behind the facet that sends it there.
-    #[inline]
-    fn is_behind(&self, wo: Vec3, wi: Vec3) -> bool {
-        Mirror::between(wo, Vec3::new(wi.x, wi.y, -wi.z)).is_some_and(|mirror| wi.dot(mirror.m) < 0.0)
-    }
+/// Whether `wi` lies behind the facet that sends it there.
+#[inline]
+fn is_behind(wo: Vec3, wi: Vec3) -> bool {
+    Mirror::between(wo, Vec3::new(wi.x, wi.y, -wi.z)).is_some_and(|mirror| wi.dot(mirror.m) < 0.0)
 }

@@ -39,7 +39,7 @@ pub enum CoatedBase {
     /// A metal.
     Metal {
         /// How it reflects where there is no coat.
-        metal: Box<Metal>,
+        metal: Metal,
         /// Its microfacets, after Trowbridge and Reitz, where it is rough.
         alpha: Box<Roughness>,
     },

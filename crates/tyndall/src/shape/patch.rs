@@ -43,7 +43,7 @@ impl Patch {
     }
 
     /// The two triangles of a patch that is flat (up to rounding of its corners) and convex.
-    pub(super) fn as_triangles(&self) -> Option<Mesh> {
+    pub fn as_triangles(&self) -> Option<Mesh> {
         let [p00, p10, p01, p11] = self.corners.map(Vec3::as_dvec3);
         let normals = [(p00, p10, p01), (p10, p11, p00), (p11, p01, p10), (p01, p00, p11)]
             .map(|(at, next, last)| (next - at).cross(last - at));

@@ -253,7 +253,7 @@ mod tests {
     /// A sheet of small triangles, some of them far away.
     fn sheet() -> Vec<Entry> {
         let corner = |i: u32, j: u32| Vec3::new(i as f32, j as f32, ((i * 7 + j * 13) % 5) as f32 * 0.1);
-        let far = |i: u32| if i % 97 == 0 { 1e4 } else { 0.0 };
+        let far = |i: u32| if i.is_multiple_of(97) { 1e4 } else { 0.0 };
         (0..6000u32)
             .map(|prim| {
                 let (i, j) = (prim % 80, prim / 80);

@@ -1,0 +1,73 @@
+//! Meshes that the language cannot say in words: PLY files beside the scene.
+
+use crate::build::shapes::triangles_of;
+use crate::desc::{FileRef, ShapeDesc, ShapeKind};
+use crate::error::SceneError;
+use tyndall::shape::Mesh;
+
+use crate::mesh::{TriangleMesh, read_ply, write_ply};
+
+use super::Draft;
+use super::names::for_a_file;
+
+impl Draft<'_> {
+    /// The name of a PLY file with the triangles of a shape as they are, normals and texture coordinates included. `None` if
+    /// the mesh cannot be read, which is reported.
+    pub(super) fn mesh(&mut self, shape: &ShapeDesc) -> Option<String> {
+        let mesh = match triangles_of(&shape.kind)? {
+            Ok(mesh) => mesh,
+            Err(error) => {
+                self.errors.push(SceneError::at(shape.span, error.to_string()));
+                return None;
+            }
+        };
+        Some(self.mesh_file(shape, mesh))
+    }
+
+    /// The name of a PLY file with these triangles, which are those of a shape.
+    pub(super) fn mesh_file(&mut self, shape: &ShapeDesc, mesh: Mesh) -> String {
+        let some = |present: bool| present.then_some(());
+        let triangles = TriangleMesh {
+            positions: mesh.positions,
+            indices: mesh.indices,
+            normals: some(!mesh.normals.is_empty()).map(|()| mesh.normals),
+            uvs: some(!mesh.uvs.is_empty()).map(|()| mesh.uvs),
+            ..TriangleMesh::default()
+        };
+        let mut bytes = Vec::new();
+        // Writing to memory cannot fail.
+        let _ = write_ply(&triangles, &mut bytes);
+        // The same mesh twice is one file.
+        let known = self.meshes.iter().find(|(_, known)| *known == bytes).map(|(path, _)| path.clone());
+        let path = known.unwrap_or_else(|| {
+            let path = self.directory.join(format!("{}-{}.ply", for_a_file(&self.stem), self.free_name(shape)));
+            self.meshes.push((path.clone(), bytes));
+            path
+        });
+        self.relative(&path, shape.span)
+    }
+
+    /// What the mesh of a shape is called: as its file, as the shape, or by a number.
+    fn free_name(&self, shape: &ShapeDesc) -> String {
+        let file = match &shape.kind {
+            ShapeKind::Ply { path, .. } | ShapeKind::Obj { path, .. } | ShapeKind::Serialized { path, .. } => {
+                path.value.file_stem().and_then(|stem| stem.to_str())
+            }
+            _ => None,
+        };
+        let wanted = for_a_file(file.or(shape.name.as_deref()).unwrap_or("mesh"));
+        let mut names = super::names::Names::default();
+        let prefix = format!("{}-", for_a_file(&self.stem));
+        // Neither a mesh that was just made nor a file that the scene names is written over.
+        for path in self.meshes.iter().map(|(path, _)| path).chain(self.desc.files()) {
+            let taken = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.strip_prefix(&prefix));
+            names.unique(taken, "mesh");
+        }
+        names.unique(Some(&wanted), "mesh")
+    }
+}
+
+/// Whether a PLY file has normals. `None` if it cannot be read: whoever renders the scene is told.
+pub(super) fn has_normals(path: &FileRef) -> Option<bool> {
+    read_ply(&path.value).ok().map(|mesh| mesh.normals.is_some())
+}

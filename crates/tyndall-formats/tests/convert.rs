@@ -1,0 +1,216 @@
+//! Scenes from one language to the other and back: the same picture, bit for bit.
+//!
+//! Every scene of `scenes/` takes the way there and back. What the other language has no word for is refused with the place in
+//! the file. What is not refused
+//! - gives the same image after the way there and back,
+//! - gives the same image on the way, if there was no warning,
+//! - is written the same way the second time: nothing wears off.
+#![allow(clippy::print_stderr)] // what the round trips come to is told
+
+use std::path::{Path, PathBuf};
+
+use tyndall::{
+    film::Crop,
+    integrator::VolPath,
+    render::{Settings, render},
+    spectrum::ColorMode,
+};
+use tyndall_formats::{
+    build::build,
+    desc::SceneDesc,
+    error::{Severity, Unsupported},
+    load,
+    source::SourceMap,
+    write::{Language, Written, write},
+};
+
+/// A directory of a test's own.
+fn scratch(name: &str) -> PathBuf {
+    let dir = std::env::temp_dir().join(format!("tyndall-convert-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    dir
+}
+
+/// The bits of a few pixels in the middle.
+fn image(desc: &SceneDesc, sources: &SourceMap, side: u32) -> Vec<[u32; 3]> {
+    let (scene, _) = build(desc, sources.clone(), ColorMode::Rgb).unwrap_or_else(|e| panic!("{e}"));
+    let (width, height) = (scene.camera.width, scene.camera.height);
+    let middle = |n: u32| (n.saturating_sub(side) / 2, n.saturating_sub(side) / 2 + side.min(n));
+    let ((x0, x1), (y0, y1)) = (middle(width), middle(height));
+    let crop = Some(Crop { min: (x0, y0), max: (x1, y1) });
+    let film = render(&scene, &VolPath::default(), &Settings { spp: 2, crop, ..Settings::default() }, &()).film;
+    let pixels = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
+    pixels.map(|(x, y)| film.pixel(x, y).unwrap().mean().map(f32::to_bits)).collect()
+}
+
+fn save(path: &Path, written: &Written) {
+    std::fs::write(path, &written.text).unwrap();
+    for (path, bytes) in &written.meshes {
+        std::fs::write(path, bytes).unwrap();
+    }
+}
+
+fn read(path: &Path) -> (SceneDesc, SourceMap) {
+    load(path, &[], Unsupported::Refuse)
+        .unwrap_or_else(|e| panic!("{e}\n{}", std::fs::read_to_string(path).unwrap_or_default()))
+}
+
+/// The text without its first comment, which names the file that it comes from.
+fn body(text: &str) -> &str {
+    text.split_once("\n\n").or_else(|| text.split_once("-->\n")).map_or(text, |(_, body)| body)
+}
+
+/// What became of a scene.
+#[derive(Debug, PartialEq)]
+enum Outcome {
+    /// The same picture everywhere.
+    Same,
+    /// The same picture after the way there and back; in the other language it differs, as a warning says.
+    Back,
+    /// The other language has no word for something.
+    Refused,
+}
+
+/// What became of it, or what went wrong.
+fn there_and_back(from: &Path, dir: &Path, side: u32) -> Result<Outcome, String> {
+    let (mut desc, sources) = read(from);
+    let (there, back) = match Language::of(from).unwrap() {
+        Language::Mitsuba => ("there.pbrt", "back.xml"),
+        Language::Pbrt => ("there.xml", "back.pbrt"),
+    };
+    let (there, back) = (dir.join(there), dir.join(back));
+    let first = match write(&desc, &sources, &there, Unsupported::Refuse) {
+        Ok(first) => first,
+        Err(refused) => {
+            let faults: Vec<_> = refused.errors.iter().filter(|e| e.severity != Severity::Warning).collect();
+            assert!(
+                faults.iter().all(|e| e.severity == Severity::NotYet && e.span.is_some()),
+                "{}: {refused}",
+                from.display()
+            );
+            let lenient = write(&desc, &sources, &there, Unsupported::Warn).unwrap_or_else(|e| panic!("{e}"));
+            assert!(faults.iter().all(|e| lenient.text.contains(&e.message.replace("--", "- -"))), "{}", lenient.text);
+            eprintln!(
+                "{}: {}",
+                from.file_name().unwrap().display(),
+                faults.iter().map(|e| &*e.message).collect::<Vec<_>>().join("; ")
+            );
+            return Ok(Outcome::Refused);
+        }
+    };
+    save(&there, &first);
+    let (mut desc_there, sources_there) = read(&there);
+    let second = write(&desc_there, &sources_there, &back, Unsupported::Refuse).map_err(|e| e.to_string())?;
+    save(&back, &second);
+    let (mut desc_back, sources_back) = read(&back);
+    let third = write(&desc_back, &sources_back, &there, Unsupported::Refuse).map_err(|e| e.to_string())?;
+    let texts = format!("{}\n{}", first.text, second.text);
+    if body(&first.text) != body(&third.text) {
+        let lines = body(&first.text).lines().zip(body(&third.text).lines());
+        let (one, two) = lines.into_iter().find(|(one, two)| one != two).unwrap_or(("", "another length"));
+        return Err(format!("is written otherwise the second time:\n{one}\n{two}"));
+    }
+    // The filter that pbrt takes by default is the one word that has no way back.
+    if first.warnings.iter().any(|w| w.message.contains("Gaussian filter")) {
+        let filter = desc.film.filter;
+        for desc in [&mut desc_there, &mut desc_back] {
+            desc.film.filter = filter;
+        }
+    }
+    // pbrt's materials have two sides.
+    if first.warnings.iter().any(|w| w.message.contains("both sides")) {
+        desc.materials.iter_mut().for_each(|material| material.two_sided = true);
+    }
+    let before = image(&desc, &sources, side);
+    if before != image(&desc_back, &sources_back, side) {
+        return Err(format!("has another image after the way there and back\n{texts}"));
+    }
+    let is_same = before == image(&desc_there, &sources_there, side);
+    if first.warnings.is_empty() && !is_same {
+        return Err(format!("has another image on the way, and no warning says so\n{texts}"));
+    }
+    Ok(if is_same { Outcome::Same } else { Outcome::Back })
+}
+
+/// Every scene file below a directory of `scenes/`. Pieces that others include have no camera, and no `-` in their names.
+fn scenes(below: &str) -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(below);
+    let mut files: Vec<_> = std::fs::read_dir(root)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| Language::of(path).is_some())
+        .filter(|path| !below.starts_with("words") || path.file_stem().unwrap().to_string_lossy().contains('-'))
+        .collect();
+    files.sort();
+    files
+}
+
+fn check(below: &str, side: u32, least: usize) {
+    let dir = scratch(&below.replace('/', "-"));
+    let mut wrong = Vec::new();
+    let mut outcomes = Vec::new();
+    for path in scenes(below) {
+        match there_and_back(&path, &dir, side) {
+            Ok(outcome) => outcomes.push(outcome),
+            Err(what) => wrong.push(format!("{} {what}", path.file_name().unwrap().display())),
+        }
+    }
+    assert!(wrong.is_empty(), "{} scenes of {below}:\n{}", wrong.len(), wrong.join("\n\n"));
+    let count = |wanted| outcomes.iter().filter(|outcome| **outcome == wanted).count();
+    let [same, back, refused] = [Outcome::Same, Outcome::Back, Outcome::Refused].map(count);
+    eprintln!("{below}: {same} the same, {back} there and back, {refused} refused");
+    assert!(same + back >= least, "{below}: only {same} and {back} of {} scenes", outcomes.len());
+    std::fs::remove_dir_all(dir).unwrap();
+}
+
+#[test]
+fn each_word_of_mitsuba_goes_to_pbrt_and_back() {
+    check("words/mitsuba", 24, 45);
+}
+
+#[test]
+fn each_word_of_pbrt_goes_to_mitsuba_and_back() {
+    check("words/pbrt", 24, 35);
+}
+
+#[test]
+fn the_scenes_of_other_renderers_go_there_and_back() {
+    check("peers/mitsuba", 12, 11);
+    check("peers/pbrt", 12, 8);
+}
+
+#[test]
+fn the_lecture_and_the_glass_of_milk_go_there_and_back() {
+    check("lecture", 12, 1);
+    check("milk", 6, 1);
+}
+
+/// Whatever line of a scene is left out, if it is a scene still, it is written in both languages, and read again.
+#[test]
+fn every_scene_with_a_line_less_is_written_and_read_again() {
+    let dir = scratch("lines");
+    for path in scenes("words/mitsuba").into_iter().chain(scenes("words/pbrt")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for left_out in 0..text.lines().count() {
+            let less: Vec<_> = text.lines().enumerate().filter(|(i, _)| *i != left_out).map(|(_, line)| line).collect();
+            let less = less.join("\n");
+            let read = match Language::of(&path).unwrap() {
+                Language::Pbrt => tyndall_formats::pbrt::parse(&path, &less),
+                Language::Mitsuba => tyndall_formats::mitsuba::parse(&path, &less, &[]),
+            };
+            let Ok((desc, sources)) = read else { continue };
+            for name in ["less.pbrt", "less.xml"] {
+                let target = dir.join(name);
+                let written = write(&desc, &sources, &target, Unsupported::Warn).unwrap_or_else(|e| panic!("{e}"));
+                save(&target, &written);
+                // Without a camera that the language knows, Mitsuba takes it for no scene.
+                let blind = written.warnings.iter().any(|w| w.message.contains("a camera"));
+                if !blind || name == "less.pbrt" {
+                    self::read(&target);
+                }
+            }
+        }
+    }
+    std::fs::remove_dir_all(dir).unwrap();
+}
