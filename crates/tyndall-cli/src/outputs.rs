@@ -78,6 +78,12 @@ pub(crate) fn write_text(to: &Path, text: &str) -> anyhow::Result<()> {
     Ok(save::replace(to, format!("{text}\n").as_bytes())?)
 }
 
+/// The command line, with quotes where words hold spaces.
+pub(crate) fn command_line() -> String {
+    let quoted = |word: String| if word.contains(' ') { format!("'{word}'") } else { word };
+    std::env::args_os().map(|word| quoted(word.to_string_lossy().into_owned())).collect::<Vec<_>>().join(" ")
+}
+
 /// What may be wrong with a file that cannot be written.
 fn hint(file: &Path) -> String {
     match file.parent() {
@@ -88,7 +94,8 @@ fn hint(file: &Path) -> String {
     }
 }
 
-fn is_png(file: &Path) -> bool {
+/// Whether a name ends in `.png`.
+pub(crate) fn is_png(file: &Path) -> bool {
     ending(file) == "png"
 }
 

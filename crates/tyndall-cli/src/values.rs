@@ -56,6 +56,48 @@ pub(crate) fn finite(word: &str) -> Result<f32, String> {
     word.parse().ok().filter(|v: &f32| v.is_finite()).ok_or_else(|| "expected a number".into())
 }
 
+/// `40mm`, `4cm`, `0.04m`; a bare number is in mm. At least 0 \[mm\].
+pub(crate) fn length(word: &str) -> Result<f64, String> {
+    let split = word.find(|c: char| c.is_ascii_alphabetic() && c != 'e' && c != 'E').unwrap_or(word.len());
+    let (number, unit) = word.split_at(split);
+    let millimetres = match unit {
+        "um" => 1e-3,
+        "" | "mm" => 1.0,
+        "cm" => 10.0,
+        "m" => 1000.0,
+        _ => return Err(format!("`{unit}` is no unit of length: write um, mm, cm or m, as in 40mm")),
+    };
+    let length = number.trim().parse::<f64>().ok().map(|n| n * millimetres);
+    length.filter(|l| *l >= 0.0 && l.is_finite()).ok_or_else(|| "expected a length, such as 40mm or 4cm".into())
+}
+
+/// A length above zero \[mm\].
+pub(crate) fn size(word: &str) -> Result<f64, String> {
+    length(word).and_then(|l| if l > 0.0 { Ok(l) } else { Err("expected a length above zero".into()) })
+}
+
+/// An angle to a normal, from 0 up to 90 [degrees].
+pub(crate) fn incidence(word: &str) -> Result<f64, String> {
+    let angle = word.parse().ok().filter(|angle| (0.0..90.0).contains(angle));
+    angle.ok_or_else(|| "expected an angle from 0 to less than 90 degrees".into())
+}
+
+/// One number for all channels, or three.
+pub(crate) fn channels(word: &str) -> Result<[f64; 3], String> {
+    let numbers: Option<Vec<f64>> =
+        word.split(',').map(|n| n.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect();
+    match numbers.as_deref() {
+        Some([grey]) => Ok([*grey; 3]),
+        Some([r, g, b]) => Ok([*r, *g, *b]),
+        _ => Err("expected a number, or three for red, green and blue, such as 0.7,1.2,1.9".into()),
+    }
+}
+
+/// A number of powers of ten.
+pub(crate) fn decades(word: &str) -> Result<f64, String> {
+    word.parse().ok().filter(|n| (0.1..=20.0).contains(n)).ok_or_else(|| "expected a number from 0.1 to 20".into())
+}
+
 /// A number between 0 and 1, both excluded.
 pub(crate) fn probability(word: &str) -> Result<f64, String> {
     word.parse().ok().filter(|p| *p > 0.0 && *p < 1.0).ok_or_else(|| "expected a number between 0 and 1".into())
@@ -74,6 +116,19 @@ mod tests {
         assert_eq!(duration("250ms"), Ok(Duration::from_millis(250)));
         for bad in ["", "s", "0s", "-1s", "1e400", "inf", "nan", "3 days", "1e300h"] {
             assert!(duration(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn lengths_have_units_and_channels_are_one_or_three() {
+        assert_eq!([length("40mm"), length("4cm"), length("0.04 m"), length("4e1")], [(); 4].map(|()| Ok(40.0)));
+        for bad in ["", "mm", "-1mm", "nan", "inf", "4 miles", "1e400"] {
+            assert!(length(bad).is_err(), "{bad}");
+        }
+        assert_eq!(channels("2"), Ok([2.0; 3]));
+        assert_eq!(channels("1, 2,3e0"), Ok([1.0, 2.0, 3.0]));
+        for bad in ["", "1,2", "1,2,3,4", "x", "nan", "inf,1,1"] {
+            assert!(channels(bad).is_err(), "{bad}");
         }
     }
 

@@ -1,7 +1,10 @@
 //! A scattering ball: what of the light sent at it, or made in it, is absorbed or escapes.
 
 use glam::DVec3;
-use tyndall::math::{Ray, Vec3};
+use tyndall::{
+    math::{Ray, Vec3},
+    scene::Scene,
+};
 
 use crate::photon::{Collision, Detector, Photon, shoot};
 use crate::point::{any_direction, source_stream};
@@ -68,13 +71,7 @@ pub fn balance(
     seed: u64,
     look: impl FnMut(&Sums) -> Verdict,
 ) -> Result<Balance, SetupError> {
-    within("the radius", radius, "positive", |r| r > 0.0 && r.is_finite())?;
-    let mut world = World::default();
-    world.sphere(radius, substance, &Substance::VACUUM)?;
-    let scene = match source {
-        Source::Beam => world.build(&Substance::VACUUM, 2.0 * radius * DVec3::Z)?,
-        Source::Volume => world.build(substance, DVec3::ZERO)?,
-    };
+    let scene = scene(substance, radius, source)?;
     let recorder = || Recorder { totals: vec![0.0; 2 + ORDERS] };
     let ray = |photon| ray_of(source, radius as f32, photon, seed);
     let sums = shoot(&scene, photons, seed, ray, recorder, look);
@@ -87,7 +84,19 @@ pub fn balance(
     })
 }
 
-fn ray_of(source: Source, radius: f32, photon: u64, seed: u64) -> Ray {
+/// The world of a ball.
+pub(crate) fn scene(substance: &Substance, radius: f64, source: Source) -> Result<Scene, SetupError> {
+    within("the radius", radius, "positive", |r| r > 0.0 && r.is_finite())?;
+    let mut world = World::default();
+    world.sphere(radius, substance, &Substance::VACUUM)?;
+    match source {
+        Source::Beam => world.build(&Substance::VACUUM, 2.0 * radius * DVec3::Z),
+        Source::Volume => world.build(substance, DVec3::ZERO),
+    }
+}
+
+/// The way of a photon from the source on.
+pub(crate) fn ray_of(source: Source, radius: f32, photon: u64, seed: u64) -> Ray {
     // The first two numbers of the stream are those of the direction.
     let mut rng = source_stream(photon, seed);
     let (u, v, w) = (rng.next_1d(), rng.next_1d(), rng.next_1d());

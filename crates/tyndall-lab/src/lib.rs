@@ -4,7 +4,10 @@
 //! | instrument | what it measures |
 //! |---|---|
 //! | [`slab`] | plane layers: reflectance, transmittance, absorption; by angle, radius, depth, order, path length |
+//! | [`beam`] | a narrow beam on a half-space, slab, ball, box or mesh: R(r), and the picture of what comes back |
 //! | [`ball`] | a scattering sphere: what it absorbs, what escapes |
+//! | [`furnace`] | any scene in uniform light: energy kept, lost or made, and where |
+//! | [`gonio`] | a surface, a phase function, layers or a grain: what leaves, by direction |
 //! | [`point`] | an isotropic point source in an infinite medium: fluence against distance |
 //! | [`walk`] | moments of a random walk |
 //!
@@ -14,13 +17,15 @@
 //! Lengths are in any unit, coefficients per that unit. Powers are fractions of the light that is sent in.
 
 pub mod ball;
-
+pub mod beam;
+pub mod diffusion;
+pub mod furnace;
+pub mod gonio;
 pub mod mci;
 pub mod photon;
 pub mod point;
 pub mod run;
 pub mod slab;
 pub mod verify;
-
 pub mod walk;
 pub mod world;

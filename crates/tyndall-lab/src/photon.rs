@@ -8,9 +8,11 @@ use tyndall::{
     integrator::VolPath,
     integrator::volpath::Status,
     math::{Ray, Vec3},
+    medium::MediumId,
     path::{Event, Path},
     sampling::{Sampler, SamplerKind},
     scene::Scene,
+    shape::Interaction,
     spectrum::{Lanes, Wavelengths},
     tally::Tally,
 };
@@ -23,8 +25,12 @@ pub struct Photon {
     path: Path,
     /// Where it last met a surface, or started [length].
     pub at_surface: Vec3,
+    /// The surface that it last met, if any.
+    pub met: Option<Interaction>,
     /// Length of its way so far [length].
     pub travelled: f64,
+    /// In which direction it was sent.
+    pub launched: Vec3,
 }
 
 /// A collision.
@@ -40,12 +46,17 @@ pub struct Collision {
     pub travelled: f64,
     /// Collisions before this one.
     pub order: u32,
+    /// The medium, where there is only one.
+    pub medium: Option<MediumId>,
 }
 
 /// What looks at photons.
 pub trait Detector {
     /// A photon collides.
     fn collide(&mut self, _collision: &Collision) {}
+    /// A photon has met a surface, and has lost so much of its power there \[1\]; roulette counts too, in the mean as
+    /// nothing.
+    fn meet(&mut self, _surface: &Interaction, _lost: f64) {}
     /// A photon leaves for good. Its [`Photon::dir`] is that in which it leaves [`Photon::at_surface`].
     fn leave(&mut self, _photon: &Photon) {}
     /// What it has seen so far: a total for each quantity.
@@ -65,6 +76,16 @@ impl Photon {
     /// Direction of travel.
     pub fn dir(&self) -> Vec3 {
         self.path.ray.dir
+    }
+
+    /// By how much radiance is greater where it started than where it is, because of the indices of refraction \[1\].
+    pub fn compression(&self) -> f64 {
+        1.0 / f64::from(self.path.history.eta_scale)
+    }
+
+    /// How often it has met a surface or collided.
+    pub fn vertices(&self) -> u32 {
+        self.path.history.vertices
     }
 
     /// How often it has been scattered.
@@ -97,12 +118,13 @@ pub(crate) fn shoot<D: Detector>(
 pub fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64, detector: &mut impl Detector, tally: &mut Tally) {
     let sampler = Sampler::new(SamplerKind::Independent, (index as u32, (index >> 32) as u32), 0, seed);
     let path = Path::new(scene, ray, Wavelengths::Mono, 0.0, sampler);
-    let mut photon = Photon { at_surface: ray.origin, path, travelled: 0.0 };
+    let mut photon = Photon { at_surface: ray.origin, met: None, path, travelled: 0.0, launched: ray.dir };
     // There are no lights to find.
     let (walk, mut nothing) = (VolPath::default(), Lanes::ZERO);
     tally.paths += 1;
     loop {
         let (weight, from, order) = (photon.weight(), photon.path.ray.origin, photon.order());
+        let medium = photon.path.inside.id();
         let event = photon.path.next_event(scene, tally);
         let p = match &event {
             Event::Escape => return detector.leave(&photon),
@@ -111,14 +133,20 @@ pub fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64, detector: &mut imp
         };
         photon.travelled += f64::from((p - from).length());
         match event {
-            Event::Surface(_) => photon.at_surface = p,
+            Event::Surface(hit) => (photon.at_surface, photon.met) = (p, Some(hit)),
             Event::Scatter { .. } => {
                 let absorbed = weight - photon.weight();
-                detector.collide(&Collision { p, weight, absorbed, travelled: photon.travelled, order });
+                detector.collide(&Collision { p, weight, absorbed, travelled: photon.travelled, order, medium });
             }
-            _ => detector.collide(&Collision { p, weight, absorbed: weight, travelled: photon.travelled, order }),
+            _ => {
+                let travelled = photon.travelled;
+                detector.collide(&Collision { p, weight, absorbed: weight, travelled, order, medium });
+            }
         }
         let status = photon.path.respond(event, scene, &walk, &mut nothing, tally);
+        if let Event::Surface(hit) = &event {
+            detector.meet(hit, weight - if status == Status::Done { 0.0 } else { photon.weight() });
+        }
         if status == Status::Done || detector.is_done(photon.order()) {
             return;
         }

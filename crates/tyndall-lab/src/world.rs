@@ -12,7 +12,7 @@ use tyndall::{
     medium::{Homogeneous, MediumId, MediumInterface},
     phase::{Isotropic, Phase, PhaseError},
     scene::{Emission, MaterialId, Object, Scene},
-    shape::{Disk, GeometryBuilder, ShapeError, Sphere},
+    shape::{Disk, GeometryBuilder, Mesh, ShapeError, Sphere},
     spectrum::{ColorMode, Spectrum},
 };
 
@@ -143,6 +143,13 @@ impl World {
     pub(crate) fn sphere(&mut self, radius: f64, inside: &Substance, outside: &Substance) -> Result<(), SetupError> {
         self.boundary(inside, outside)?;
         self.builder.add_sphere(Sphere::new(Vec3::ZERO, radius as f32), &Transform::IDENTITY, false)?;
+        Ok(())
+    }
+
+    /// A mesh; what its normals point away from is inside.
+    pub(crate) fn mesh(&mut self, mesh: Mesh, inside: &Substance, outside: &Substance) -> Result<(), SetupError> {
+        self.boundary(inside, outside)?;
+        self.builder.add_mesh(mesh, &Transform::IDENTITY, false)?;
         Ok(())
     }
 

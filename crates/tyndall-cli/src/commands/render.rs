@@ -18,7 +18,7 @@ use crate::{
     integrators::integrator,
     interrupt,
     load::{Loaded, load},
-    outputs::{Outputs, write_text},
+    outputs::{Outputs, command_line, write_text},
     progress::Progress,
     report::{Course, End, Startup, Statistics, samples_per_pixel},
     tev::Tev,
@@ -190,12 +190,6 @@ fn color_name(mode: ColorMode) -> ColorName {
         ColorMode::Mono => ColorName::Mono,
         ColorMode::Spectral => ColorName::Spectral,
     }
-}
-
-/// The command line, with quotes where words hold spaces.
-fn command_line() -> String {
-    let quoted = |word: String| if word.contains(' ') { format!("'{word}'") } else { word };
-    std::env::args_os().map(|word| quoted(word.to_string_lossy().into_owned())).collect::<Vec<_>>().join(" ")
 }
 
 fn plural(n: usize) -> &'static str {

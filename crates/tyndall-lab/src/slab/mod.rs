@@ -101,7 +101,7 @@ impl Edges {
         [self.0[index], self.0[index + 1]]
     }
 
-    fn check(&self) -> Result<(), SetupError> {
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
         within("a number of bins", self.count() as f64, "at most 100000", |count| count <= Bins::MOST as f64)?;
         let unordered = self.0.windows(2).find(|w| !(w[0] >= 0.0 && w[0] < w[1] && w[1].is_finite()));
         unordered.map_or(Ok(()), |w| {
@@ -231,7 +231,7 @@ impl Setup {
     }
 
     /// The way of a photon before the first surface.
-    fn ray(&self, photon: u64, seed: u64) -> Ray {
+    pub(crate) fn ray(&self, photon: u64, seed: u64) -> Ray {
         let cosine = match self.incidence {
             Incidence::Beam(cosine) => cosine as f32,
             Incidence::Diffuse => source_stream(photon, seed).next_positive().sqrt(),

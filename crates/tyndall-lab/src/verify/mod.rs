@@ -15,7 +15,7 @@
 mod balls;
 mod layers;
 mod points;
-mod table;
+pub(crate) mod table;
 mod walks;
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};

@@ -4,29 +4,29 @@ use std::collections::{BTreeMap, HashMap};
 
 /// A row, by the names of its columns.
 #[derive(Debug, Clone)]
-pub(super) struct Row<'a>(HashMap<&'a str, &'a str>);
+pub(crate) struct Row<'a>(HashMap<&'a str, &'a str>);
 
 impl Row<'_> {
     /// The words of a column; none where it is empty or does not exist.
-    pub(super) fn word(&self, column: &str) -> &str {
+    pub(crate) fn word(&self, column: &str) -> &str {
         self.0.get(column).copied().unwrap_or("")
     }
 
     /// The number of a column; not a number where there is none.
-    pub(super) fn number(&self, column: &str) -> f64 {
+    pub(crate) fn number(&self, column: &str) -> f64 {
         self.word(column).parse().unwrap_or(f64::NAN)
     }
 }
 
 /// All rows of a table.
-pub(super) fn rows(text: &str) -> Vec<Row<'_>> {
+pub(crate) fn rows(text: &str) -> Vec<Row<'_>> {
     let mut lines = text.lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty());
     let columns: Vec<&str> = lines.next().unwrap_or("").split(',').collect();
     lines.map(|line| Row(columns.iter().copied().zip(line.split(',')).collect())).collect()
 }
 
 /// Rows of one key each, in the order of the keys.
-pub(super) fn grouped<'r, 'a, K: Ord>(
+pub(crate) fn grouped<'r, 'a, K: Ord>(
     rows: &'r [Row<'a>],
     key: impl Fn(&'r Row<'a>) -> K,
 ) -> BTreeMap<K, Vec<&'r Row<'a>>> {
@@ -38,7 +38,7 @@ pub(super) fn grouped<'r, 'a, K: Ord>(
 }
 
 /// The ends of the bins `r_lo` to `r_hi`, increasing.
-pub(super) fn edges(rows: &[&Row]) -> Vec<f64> {
+pub(crate) fn edges(rows: &[&Row]) -> Vec<f64> {
     let mut edges: Vec<f64> = rows.iter().flat_map(|row| [row.number("r_lo"), row.number("r_hi")]).collect();
     edges.sort_by(f64::total_cmp);
     edges.dedup();

@@ -1,6 +1,11 @@
 //! `tyndall lab INSTRUMENT`.
 
+mod beam;
+mod furnace;
+mod gonio;
 pub(crate) mod options;
+mod picture;
+mod polar;
 mod report;
 
 use std::{
@@ -11,6 +16,7 @@ use std::{
 
 use anyhow::{Context, ensure};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use tyndall_formats::film::save;
 use tyndall_lab::{
     ball, mci, point,
     run::{Estimate, Sums, Verdict},
@@ -33,18 +39,26 @@ pub(crate) fn run(instrument: &Instrument) -> anyhow::Result<ExitCode> {
     interrupt::listen()?;
     let measurement = match instrument {
         Instrument::Slab(o) => &o.measurement,
+        Instrument::Beam(o) => &o.measurement,
+        Instrument::Furnace(o) => &o.measurement,
+        Instrument::Gonio(o) => &o.measurement,
         Instrument::Point(o) => &o.measurement,
         Instrument::Sphere(o) => &o.measurement,
         Instrument::Walk(o) => &o.measurement,
     };
-    let reports = pool(measurement.threads)?.install(|| match instrument {
-        Instrument::Slab(options) => slabs(options),
-        Instrument::Point(options) => Ok(vec![point(options)?]),
-        Instrument::Sphere(options) => Ok(vec![sphere(options)?]),
-        Instrument::Walk(options) => Ok(vec![random_walk(options)?]),
+    measurement.check()?;
+    let done = |report: Report| Ok((vec![report], ExitCode::SUCCESS));
+    let (reports, exit) = pool(measurement.threads)?.install(|| match instrument {
+        Instrument::Slab(options) => Ok((slabs(options)?, ExitCode::SUCCESS)),
+        Instrument::Beam(options) => done(beam::run(options)?),
+        Instrument::Furnace(options) => furnace::run(options).map(|(report, exit)| (vec![report], exit)),
+        Instrument::Gonio(options) => done(gonio::run(options)?),
+        Instrument::Point(options) => done(point(options)?),
+        Instrument::Sphere(options) => done(sphere(options)?),
+        Instrument::Walk(options) => done(random_walk(options)?),
     })?;
     tell(&reports, measurement)?;
-    Ok(if interrupt::requested() { ExitCode::from(interrupt::EXIT) } else { ExitCode::SUCCESS })
+    Ok(if interrupt::requested() { ExitCode::from(interrupt::EXIT) } else { exit })
 }
 
 /// Table, files and plots; a run of several writes to numbered files.
@@ -85,11 +99,29 @@ impl Measurement {
         self.photons.or(own).unwrap_or(if unlimited { u64::MAX >> 8 } else { PHOTONS })
     }
 
+    /// Whether everything could be written: better known before an experiment than after it.
+    fn check(&self) -> anyhow::Result<()> {
+        let named = [&self.json, &self.csv, &self.plot].into_iter().flatten();
+        for file in named.filter(|file| file.as_path() != Path::new("-")) {
+            save::check(file)?;
+        }
+        if let Some(plot) = &self.plot {
+            let ending = plot.extension().and_then(|ending| ending.to_str());
+            ensure!(matches!(ending, Some("svg" | "png")), "{}: plots are written as .svg or .png", plot.display());
+        }
+        Ok(())
+    }
+
     /// Shows how far an experiment is, and ends it when it is time, good enough, or Ctrl-C was pressed.
     fn look(&self, photons: u64) -> anyhow::Result<impl FnMut(&Sums) -> Verdict + use<>> {
+        self.look_at_one_of(1, photons)
+    }
+
+    /// The same for one of several experiments, which share the time.
+    fn look_at_one_of(&self, count: u32, photons: u64) -> anyhow::Result<impl FnMut(&Sums) -> Verdict + use<>> {
         let template = "{bar:30} {pos} of {len} photons, {elapsed} so far, {msg} left";
         let bar = ProgressBar::new(photons).with_style(ProgressStyle::with_template(template)?);
-        let (start, limit, error) = (Instant::now(), self.time, self.error);
+        let (start, limit, error) = (Instant::now(), self.time.map(|time| time / count), self.error);
         Ok(move |sums: &Sums| {
             let first = sums.estimate(0).standard_error;
             let far = progress(sums, photons, start.elapsed(), limit, error.map(|error| (first, error)));
@@ -115,7 +147,7 @@ fn progress(sums: &Sums, photons: u64, elapsed: Duration, limit: Option<Duration
 }
 
 fn figure(name: impl Into<String>, unit: &'static str, estimate: Estimate) -> Figure {
-    Figure { name: name.into(), unit, estimate }
+    Figure { name: name.into(), unit, estimate, exact: None }
 }
 
 fn slabs(options: &SlabOptions) -> anyhow::Result<Vec<Report>> {
@@ -167,7 +199,7 @@ fn slab(title: String, setup: &Setup, own: Option<u64>, measurement: &Measuremen
     let exact = Estimate { mean: m.first_surface, standard_error: 0.0 };
     figures.push(figure("first surface alone", "", exact));
     figures.extend(m.absorbed.iter().enumerate().map(|(i, a)| figure(format!("absorbed in layer {}", i + 1), "", *a)));
-    Ok(Report { title, photons: m.photons, figures, curves: curves(setup, &m) })
+    Ok(Report { title, photons: m.photons, figures, curves: curves(setup, &m), verdict: None, polar: None })
 }
 
 fn curves(setup: &Setup, m: &Measured) -> Vec<Curve> {
@@ -192,12 +224,13 @@ fn curves(setup: &Setup, m: &Measured) -> Vec<Curve> {
             &m.transmittance_by_length,
         ),
     ];
-    let curve = |(name, unit, of, of_unit, edges, estimates): (_, _, _, _, &Edges, &Vec<Estimate>)| Curve {
-        name,
+    let curve = |(name, unit, of, of_unit, edges, estimates): (&str, _, _, _, &Edges, &Vec<Estimate>)| Curve {
+        name: name.to_owned(),
         unit,
         of,
         of_unit,
         bins: (0..edges.count()).map(|i| bin(edges.bin(i), estimates[i])).collect(),
+        models: Vec::new(),
     };
     all.into_iter().map(curve).filter(|curve| !curve.bins.is_empty()).collect()
 }
@@ -224,12 +257,15 @@ fn point(options: &PointOptions) -> anyhow::Result<Report> {
         photons: m.photons,
         figures: vec![figure("∫ 4πr²φ dr", "mfp", m.m0), figure("∫ 4πr⁴φ dr", "mfp³", m.m2)],
         curves: vec![Curve {
-            name: "4πr²φ",
+            name: "4πr²φ".into(),
+            models: Vec::new(),
             unit: "",
             of: "distance",
             of_unit: "mfp",
             bins: m.shells.iter().map(|shell| bin([shell.inner, shell.outer], shell.fluence)).collect(),
         }],
+        verdict: None,
+        polar: None,
     })
 }
 
@@ -249,12 +285,15 @@ fn sphere(options: &SphereOptions) -> anyhow::Result<Report> {
             figure("leaves unscattered", "", m.unscattered),
         ],
         curves: vec![Curve {
-            name: "leaves by order",
+            name: "leaves by order".into(),
+            models: Vec::new(),
             unit: "",
             of: "scattering order",
             of_unit: "",
             bins: m.by_order.iter().enumerate().map(|(i, e)| bin(orders.bin(i), *e)).collect(),
         }],
+        verdict: None,
+        polar: None,
     })
 }
 
@@ -272,5 +311,7 @@ fn random_walk(options: &WalkOptions) -> anyhow::Result<Report> {
         photons: m[0].photons,
         figures,
         curves: Vec::new(),
+        verdict: None,
+        polar: None,
     })
 }

@@ -1,5 +1,7 @@
 //! What the user may ask of the instruments.
 
+mod specimen;
+
 use std::{path::PathBuf, time::Duration};
 
 use clap::{Args, Subcommand};
@@ -7,12 +9,19 @@ use tyndall_lab::slab::Layer;
 use tyndall_lab::world::Substance;
 
 use crate::values;
+pub(crate) use specimen::{FurnaceOptions, GonioOptions};
 
 /// A virtual instrument.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Instrument {
     /// Plane layers under a beam: reflectance, transmittance, absorption, and where; also from MCML's .mci files
     Slab(SlabOptions),
+    /// A narrow beam on a half-space, slab, ball, box or mesh of milk, marble, …: R(r), and the picture of what comes back
+    Beam(BeamOptions),
+    /// Any scene or material in uniform light: energy kept, lost or made, and where
+    Furnace(FurnaceOptions),
+    /// What leaves a surface, a phase function, layers or a grain, by direction; whether a BSDF's parts agree
+    Gonio(GonioOptions),
     /// An isotropic point source in an infinite medium: fluence against distance
     Point(PointOptions),
     /// A scattering ball in a beam: what it absorbs, what leaves after how many scatterings
@@ -98,6 +107,114 @@ pub(crate) struct SlabOptions {
     /// … by the length of the way (time of flight times speed): N bins of a width [length]
     #[arg(long, value_name = "N,WIDTH", value_parser = bins, help_heading = "Bins")]
     pub(crate) lengths: Option<(usize, f64)>,
+    #[command(flatten)]
+    pub(crate) measurement: Measurement,
+}
+
+/// A narrow beam on a body.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tyndall lab beam --material skimmilk --plot r.svg --picture skim     R(r) and the picture, on a half-space
+  tyndall lab beam --material marble --cube 40mm --spot 1mm --tilt 40 --picture cube
+                                                                       the cube, from aside
+  tyndall lab beam --sigma-a 0.1 --sigma-s 10 --g 0.9 --n 1.4 --slab 2mm --error 1e-3
+  tyndall lab beam --material wholemilk --mesh bunny.ply --mesh-scale 100 --time 2m --picture bunny.exr
+
+The beam comes from above (−z) and falls on the middle of the body. Where light leaves through what faces the beam is
+told by the distance from its axis, per area and power of the beam, in the three colours of the material. Light that
+has never collided is left out, also of the picture. Beside it stands what diffusion theory says of a half-space under
+a beam without width: the classical dipole (Jensen et al. 2001), the better dipole (d'Eon 2012), photon beam diffusion
+(Habel et al. 2013).
+
+The picture shows the mean radiance [1/(mm² sr), of a beam of power 1] that leaves within --acceptance of the direction
+of view: NAME.exr with its standard error, and NAME.png, logarithmic over --decades. Lengths are in mm unless they say
+otherwise: 40mm, 4cm, 0.04m.")]
+pub(crate) struct BeamOptions {
+    /// A measured material, such as skimmilk, wholemilk or marble
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["sigma_a", "sigma_s", "g"], help_heading = "Material")]
+    #[arg(required_unless_present_any = ["sigma_a", "sigma_s"])]
+    pub(crate) material: Option<String>,
+    /// Isotropic scattering with σ_s′ = (1 − g) σ_s, for materials of which g was measured (as pbrt has them)
+    #[arg(long, requires = "material", help_heading = "Material")]
+    pub(crate) reduced: bool,
+    /// Absorption coefficient: one number, or red, green, blue [1/mm]
+    #[arg(long, value_name = "A|R,G,B", value_parser = values::channels, allow_hyphen_values = true)]
+    #[arg(help_heading = "Material")]
+    pub(crate) sigma_a: Option<[f64; 3]>,
+    /// Scattering coefficient: one number, or red, green, blue [1/mm]
+    #[arg(long, value_name = "S|R,G,B", value_parser = values::channels, allow_hyphen_values = true)]
+    #[arg(help_heading = "Material")]
+    pub(crate) sigma_s: Option<[f64; 3]>,
+    /// Mean cosine of Henyey and Greenstein's phase function [default: 0]
+    #[arg(long, value_name = "G|R,G,B", value_parser = values::channels, allow_hyphen_values = true)]
+    #[arg(help_heading = "Material")]
+    pub(crate) g: Option<[f64; 3]>,
+    /// Index of refraction [default: the material's, or 1]
+    #[arg(long, value_name = "N", help_heading = "Material")]
+    pub(crate) n: Option<f64>,
+
+    /// A slab of this thickness, instead of a half-space
+    #[arg(long, value_name = "THICKNESS", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(group = "body", help_heading = "Experiment")]
+    pub(crate) slab: Option<f64>,
+    /// A ball of this diameter
+    #[arg(long, value_name = "DIAMETER", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(group = "body", help_heading = "Experiment")]
+    pub(crate) sphere: Option<f64>,
+    /// A cube of this edge
+    #[arg(long, value_name = "EDGE", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(group = "body", help_heading = "Experiment")]
+    pub(crate) cube: Option<f64>,
+    /// A box of these edges
+    #[arg(long = "box", value_name = "X,Y,Z", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(value_delimiter = ',', num_args = 3)]
+    #[arg(group = "body", help_heading = "Experiment")]
+    pub(crate) edges: Vec<f64>,
+    /// A closed mesh: .ply, .obj or .serialized
+    #[arg(long, value_name = "FILE", group = "body", help_heading = "Experiment")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// Length of the mesh's unit
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(default_value = "1mm", help_heading = "Experiment")]
+    pub(crate) mesh_scale: f64,
+    /// Diameter of the beam
+    #[arg(long, value_name = "DIAMETER", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(default_value = "0", help_heading = "Experiment")]
+    pub(crate) spot: f64,
+    /// N rings of a width around the beam [default: 24, each wider than the one before]
+    #[arg(long, value_name = "N,WIDTH", value_parser = bins, help_heading = "Experiment")]
+    pub(crate) radii: Option<(usize, f64)>,
+
+    /// Write the picture: a name in .exr (numbers) or .png (logarithmic), or one without ending for both
+    #[arg(long, value_name = "FILE", help_heading = "Picture")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Pixels along each edge
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=512))]
+    #[arg(help_heading = "Picture")]
+    pub(crate) pixels: u32,
+    /// What the picture is wide [default: the body, or 40 mean free paths of diffusion]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    #[arg(help_heading = "Picture")]
+    pub(crate) field: Option<f64>,
+    /// Half-angle of the cone of light that the camera accepts [degrees]: larger is less noisy, and blunter
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, help_heading = "Picture")]
+    pub(crate) acceptance: f64,
+    /// How far the camera stands from the beam [degrees]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, help_heading = "Picture")]
+    pub(crate) tilt: f64,
+    /// … to which side [degrees]
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        help_heading = "Picture"
+    )]
+    pub(crate) azimuth: f64,
+    /// Powers of ten from black to white
+    #[arg(long, value_name = "N", default_value_t = 4.0, value_parser = values::decades, help_heading = "Picture")]
+    pub(crate) decades: f64,
     #[command(flatten)]
     pub(crate) measurement: Measurement,
 }
