@@ -358,7 +358,7 @@ impl Bsdf<'_> {
     }
 }
 
-/// A vertex of every path holds one: no model may make it bigger for all (keep tables and constants in the scene).
+/// A vertex of every path holds one, as big as the biggest, a coat: tables and constants stay in the scene.
 const _: () = assert!(size_of::<Bsdf>() <= 112);
 
 /// A complex index \[1\] with this reflectance at normal incidence: 1 and `k = 2√r / √(1 − r)`, `r` in [0, 0.9999] (pbrt's
