@@ -7,6 +7,7 @@ mod commands;
 mod false_color;
 mod integrators;
 mod interrupt;
+mod legend;
 mod load;
 mod outputs;
 mod progress;

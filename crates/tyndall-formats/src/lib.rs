@@ -14,6 +14,7 @@ pub mod film;
 mod gzip;
 pub mod image;
 pub mod inspect;
+pub mod measured;
 pub mod mesh;
 pub mod mitsuba;
 pub mod pbrt;

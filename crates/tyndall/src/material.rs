@@ -11,6 +11,7 @@ use std::sync::Arc;
 use crate::{
     bsdf::{
         Bsdf, Plastic, RoughCoat, RoughPlastic, Sides, index_of_reflectance,
+        measured::{Measured, Tables},
         microfacet::{Distribution, Shadowing},
     },
     relief::Relief,
@@ -103,6 +104,13 @@ pub enum Material {
     PrincipledThin(Box<ThinTextures>),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Box<CoatedMaterial>),
+    /// As it was measured.
+    Measured {
+        /// What was.
+        tables: Arc<Tables>,
+        /// The sides that reflect.
+        sides: Sides,
+    },
     /// No material: light passes, and may enter another medium.
     Null,
     /// No surface either: light passes and stays in its medium, and nothing shines (pbrt's `alpha`).
@@ -239,13 +247,14 @@ impl Material {
                     .on(*sides)
             }
             Self::RoughPlastic { coat, reflectance, nonlinear, tint, sides } => {
-                Bsdf::RoughPlastic(RoughPlastic::new(coat, reflectance.eval(at, wavelengths), *nonlinear))
+                Bsdf::RoughPlastic(RoughPlastic::new(coat, share(reflectance, at, wavelengths), *nonlinear))
                     .tinted(tint.eval(at, wavelengths), Lanes::ONE)
                     .on(*sides)
             }
             Self::Principled(textures) => textures.bsdf(at, wavelengths),
             Self::PrincipledThin(textures) => textures.bsdf(at, wavelengths),
             Self::Coated(coated) => coated.bsdf(at, wavelengths, hero),
+            Self::Measured { tables, sides } => Bsdf::Measured(Measured::new(tables, wavelengths)).on(*sides),
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
             Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } | Self::Embossed { .. } => Bsdf::Null,
         }

@@ -86,7 +86,7 @@ fn beckmann_mirror() -> Bsdf<'static> {
 }
 
 /// With Mitsuba's shadowing: Beckmann's law for glass, that of Trowbridge and Reitz for metal.
-fn separable(bsdf: Bsdf) -> Bsdf {
+fn separable(bsdf: Bsdf<'static>) -> Bsdf<'static> {
     let beckmann = matches!(bsdf, Bsdf::RoughDielectric(_));
     let law = if beckmann { Distribution::Beckmann } else { Distribution::TrowbridgeReitz };
     bsdf.distributed(law, Shadowing::Separable)

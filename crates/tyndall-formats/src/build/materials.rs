@@ -5,6 +5,7 @@ use std::sync::Arc;
 use tyndall::{
     bsdf::{
         RoughCoat, SMOOTHEST_ALPHA, Sides, internal_reflectance,
+        measured::Tables,
         microfacet::{Distribution, Microfacets, Shadowing},
     },
     material::{CoatedBase, CoatedMaterial, Index, Material, Metal, Roughness},
@@ -16,8 +17,8 @@ use tyndall::{
 use super::{Builder, made::parts, material_id, spectra::Measure};
 use crate::{
     desc::{
-        BaseDesc, CoatedDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, ReliefMap,
-        RoughnessDesc, ShadowingKind, SpectrumDesc, Varying,
+        BaseDesc, CoatedDesc, ConductorOptics, FileRef, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind,
+        ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, Varying,
     },
     error::SceneError,
     source::{Span, Spanned},
@@ -104,6 +105,7 @@ impl Builder<'_> {
             MaterialKind::Principled(desc) => self.principled(desc, sides),
             MaterialKind::PrincipledThin(desc) => self.principled_thin(desc),
             MaterialKind::Coated(coated) => self.coated(coated).map(|coated| Material::Coated(Box::new(coated))),
+            MaterialKind::Measured { path } => self.measured(path).map(|tables| Material::Measured { tables, sides }),
             MaterialKind::Interface => Some(Material::Null),
             MaterialKind::Mix { of, amount } => Some(Material::Mix {
                 of: [material_id(of[0].value), material_id(of[1].value)],
@@ -158,6 +160,23 @@ impl Builder<'_> {
             max_depth: desc.max_depth,
             walks: desc.walks,
         })
+    }
+
+    /// A measured material, read once.
+    fn measured(&mut self, path: &FileRef) -> Option<Arc<Tables>> {
+        if let Some((_, tables)) = self.measured.iter().find(|(file, _)| *file == path.value) {
+            return Some(Arc::clone(tables));
+        }
+        let made = crate::measured::read(&path.value)
+            .and_then(|parts| Tables::new(parts, self.color).map_err(|error| error.to_string()));
+        match made {
+            Ok(tables) => {
+                let tables = Arc::new(tables);
+                self.measured.push((path.value.clone(), Arc::clone(&tables)));
+                Some(tables)
+            }
+            Err(problem) => self.fail(SceneError::at(path.span, format!("{}: {problem}", path.value.display()))),
+        }
     }
 
     fn metal(&mut self, optics: &ConductorOptics) -> Option<Metal> {

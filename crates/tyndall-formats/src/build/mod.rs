@@ -16,12 +16,11 @@ mod textures;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::{collections::HashMap, path::PathBuf, sync::Arc};
 
 use glam::DMat4;
 use tyndall::{
-    bsdf::RoughCoat,
+    bsdf::{RoughCoat, measured::Tables},
     film::Crop,
     light::LightTable,
     math::Transform,
@@ -46,7 +45,7 @@ use textures::Pictures;
 /// Files that cannot be read, unknown names of measured data, coefficients that are no physics.
 pub fn build(desc: &SceneDesc, sources: SourceMap, color: ColorMode) -> Result<(Scene, SourceMap), Diagnostics> {
     let mut errors = ErrorList::default();
-    let scene = Builder::new(desc, &mut errors).scene(color);
+    let scene = Builder::new(desc, &mut errors, color).scene();
     match scene {
         Some(scene) if errors.is_empty() => Ok((scene, sources)),
         _ => Err(errors.into_diagnostics(sources)),
@@ -60,21 +59,26 @@ struct Builder<'a> {
     /// Textures that are made, or were found wrong.
     textures: HashMap<(TextureId, Measure), Option<Texture>>,
     pictures: Pictures,
+    /// Measured materials by file.
+    measured: Vec<(PathBuf, Arc<Tables>)>,
     /// Coats of rough plastics, each tabulated once.
     coats: Vec<Arc<RoughCoat>>,
     meshes: Meshes,
     /// Colours of meshes: of vertices, and of faces.
     painted: [Arc<Painted>; 2],
     made: Made,
+    color: ColorMode,
 }
 
 impl<'a> Builder<'a> {
-    fn new(desc: &'a SceneDesc, errors: &'a mut ErrorList) -> Self {
+    fn new(desc: &'a SceneDesc, errors: &'a mut ErrorList, color: ColorMode) -> Self {
         Self {
             desc,
             errors,
             textures: HashMap::new(),
             pictures: Pictures::new(),
+            measured: Vec::new(),
+            color,
             coats: Vec::new(),
             meshes: Meshes::new(desc),
             painted: [Arc::default(), Arc::default()],
@@ -84,8 +88,8 @@ impl<'a> Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn scene(&mut self, color: ColorMode) -> Option<Scene> {
-        if self.desc.film.color() == ColorMode::Spectral && color != ColorMode::Spectral {
+    fn scene(&mut self) -> Option<Scene> {
+        if self.desc.film.color() == ColorMode::Spectral && self.color != ColorMode::Spectral {
             return self.fail(
                 SceneError::at(self.desc.film.span, "this film records wavelengths, and the render has colours only")
                     .help("render it with --color spectral"),
@@ -102,7 +106,7 @@ impl Builder<'_> {
         let media = media.into_iter().collect::<Option<Vec<_>>>()?;
         let (shapes, lights, camera) = (shapes?, lights?, camera?);
         let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect());
-        Some(Scene::new(color, camera, shapes.geometry, shapes.objects, materials, media, table))
+        Some(Scene::new(self.color, camera, shapes.geometry, shapes.objects, materials, media, table))
     }
 
     fn transform(&mut self, matrix: DMat4, span: Span) -> Option<Transform> {

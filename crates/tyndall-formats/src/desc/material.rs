@@ -2,7 +2,7 @@
 
 use tyndall::relief::Rule;
 
-use super::{MaterialId, PrincipledDesc, PrincipledThinDesc, Span, Spanned, SpectrumDesc, Varying};
+use super::{FileRef, MaterialId, PrincipledDesc, PrincipledThinDesc, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,6 +83,11 @@ pub enum MaterialKind {
     PrincipledThin(Box<PrincipledThinDesc>),
     /// A base under a coat of a dielectric (pbrt).
     Coated(Box<CoatedDesc>),
+    /// A material as it was measured, in a file of RGL's.
+    Measured {
+        /// The file.
+        path: FileRef,
+    },
     /// No surface at all: a boundary of media that light passes unchanged.
     Interface,
     /// Two materials mixed.

@@ -67,7 +67,7 @@ impl MaterialKind {
             Self::Embossed { map: ReliefMap::Heights { texture, .. } | ReliefMap::Normals(texture), .. } => {
                 vec![texture]
             }
-            Self::Interface | Self::TwoFaced { .. } => Vec::new(),
+            Self::Measured { .. } | Self::Interface | Self::TwoFaced { .. } => Vec::new(),
         }
     }
 }

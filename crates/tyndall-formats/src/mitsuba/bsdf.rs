@@ -148,6 +148,14 @@ impl<'t> Builder<'t> {
                 roughness: (plugin == "roughplastic").then(|| self.roughness(true, &mut object)),
                 tint: self.varying(&mut object, "specular_reflectance", Measure::Part),
             },
+            "measured" => {
+                let Some(name) = object.string("filename", &mut self.report) else {
+                    let error = SceneError::at(element.span, "the bsdf \"measured\" lacks a \"filename\"");
+                    self.report.errors.push(error);
+                    return None;
+                };
+                MaterialKind::Measured { path: self.file(name) }
+            }
             "principled" => self.principled(&mut object),
             "principledthin" => self.principled_thin(&mut object),
             "blendbsdf" => {

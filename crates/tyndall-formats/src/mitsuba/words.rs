@@ -24,6 +24,7 @@ const PLUGINS: &[Plugins] = &[
             "null",
             "plastic",
             "roughplastic",
+            "measured",
             "principled",
             "principledthin",
             "blendbsdf",
@@ -31,7 +32,7 @@ const PLUGINS: &[Plugins] = &[
             "bumpmap",
             "normalmap",
         ],
-        later: &["circular", "hair", "measured", "measured_polarized", "polarizer", "pplastic", "retarder"],
+        later: &["circular", "hair", "measured_polarized", "polarizer", "pplastic", "retarder"],
     },
     Plugins {
         tag: "emitter",

@@ -16,7 +16,7 @@ use crate::desc::{
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 10] = [
+const MATERIALS: [&str; 11] = [
     "coatedconductor",
     "coateddiffuse",
     "conductor",
@@ -24,11 +24,12 @@ const MATERIALS: [&str; 10] = [
     "diffuse",
     "diffusetransmission",
     "interface",
+    "measured",
     "mix",
     "subsurface",
     "thindielectric",
 ];
-const LATER_MATERIALS: [&str; 2] = ["hair", "measured"];
+const LATER_MATERIALS: [&str; 1] = ["hair"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -85,6 +86,7 @@ impl Reader {
             "diffusetransmission" => diffuse_transmission(&mut p, &self.textures),
             "coateddiffuse" => coated_diffuse(&mut p, &self.textures),
             "coatedconductor" => coated_conductor(&mut p, &self.textures),
+            "measured" => measured(&mut p),
             "mix" => self.mix(&mut p),
             "subsurface" => self.subsurface(span, &mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
@@ -246,6 +248,14 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
         transmittance: p.varying("transmittance", 0.25, textures),
         scale: p.not_negative("scale", 1.0).value,
     }
+}
+
+fn measured(p: &mut Params) -> MaterialKind {
+    let Some(file) = p.string_opt("filename") else {
+        p.error(SceneError::at(p.span, "a measured material needs \"string filename\""));
+        return MaterialKind::Interface;
+    };
+    MaterialKind::Measured { path: file.map(|name| p.resolve(&name)) }
 }
 
 /// The names of a roughness: along both tangents, along the first, along the second.

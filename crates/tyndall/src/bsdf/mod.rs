@@ -15,6 +15,7 @@
 //! To add a model: one file, one variant with its forwarding lines, one row in the table of `tests/models.rs`.
 
 pub mod fresnel;
+pub mod measured;
 pub mod microfacet;
 
 mod burley;
@@ -47,6 +48,7 @@ pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
+use measured::Measured;
 use microfacet::{Distribution, Microfacets, Shadowing};
 
 /// Surfaces whose roughness is below this in both directions are perfectly smooth: the lobe would be narrower than
@@ -136,6 +138,8 @@ pub enum Bsdf<'s> {
     PrincipledThin(PrincipledThin<'s>),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Coated),
+    /// As it was measured.
+    Measured(Measured<'s>),
     /// No surface at all: a mere boundary of media.
     Null,
 }
@@ -186,7 +190,7 @@ impl Bsdf<'_> {
 
     /// The same model with every reflection multiplied by `reflectance` and every transmission by `transmittance`
     /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy. What is
-    /// under a coat takes no tints.
+    /// under a coat and what was measured take no tints.
     #[must_use]
     pub fn tinted(mut self, reflectance: Lanes, transmittance: Lanes) -> Self {
         match &mut self {
@@ -206,7 +210,7 @@ impl Bsdf<'_> {
                 model.transmittance *= transmittance;
             }
             // Their colours tint them.
-            Self::Coated(_) | Self::Principled(_) | Self::PrincipledThin(_) | Self::Null => {}
+            Self::Coated(_) | Self::Measured(_) | Self::Principled(_) | Self::PrincipledThin(_) | Self::Null => {}
         }
         self
     }
@@ -237,6 +241,7 @@ impl Bsdf<'_> {
             | Self::Principled(_)
             | Self::PrincipledThin(_)
             | Self::Coated(_)
+            | Self::Measured(_)
             | Self::Null => return self,
         };
         (microfacets.distribution, microfacets.shadowing) = (distribution, shadowing);
@@ -251,6 +256,7 @@ impl Bsdf<'_> {
             Self::Conductor(model) => model.sides = sides,
             Self::RoughConductor(model) => model.metal.sides = sides,
             Self::Plastic(model) => model.sides = sides,
+            Self::Measured(model) => model.sides = sides,
             Self::RoughPlastic(model) => model.sides = sides,
             Self::Dielectric(_)
             | Self::RoughDielectric(_)
@@ -277,6 +283,7 @@ impl Bsdf<'_> {
             Self::Principled(model) => model.eval(wo, wi),
             Self::PrincipledThin(model) => model.eval(wo, wi),
             Self::Coated(model) => model.eval(wo, wi),
+            Self::Measured(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
@@ -294,6 +301,7 @@ impl Bsdf<'_> {
             Self::Principled(model) => model.pdf(wo, wi),
             Self::PrincipledThin(model) => model.pdf(wo, wi),
             Self::Coated(model) => model.pdf(wo, wi),
+            Self::Measured(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
     }
@@ -314,6 +322,7 @@ impl Bsdf<'_> {
             Self::Principled(model) => model.sample(wo, u_lobe, u),
             Self::PrincipledThin(model) => model.sample(wo, u_lobe, u),
             Self::Coated(model) => model.sample(wo, u_lobe, u),
+            Self::Measured(model) => model.sample(wo, u),
             Self::Null => Some(straight_on(wo)),
         }
     }
@@ -337,7 +346,8 @@ impl Bsdf<'_> {
             | Self::RoughConductor(_)
             | Self::Plastic(_)
             | Self::RoughPlastic(_)
-            | Self::Coated(_) => false,
+            | Self::Coated(_)
+            | Self::Measured(_) => false,
             Self::Dielectric(model) => !model.transmittance.is_zero(),
             Self::RoughDielectric(model) => !model.interface.transmittance.is_zero(),
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),
@@ -348,7 +358,7 @@ impl Bsdf<'_> {
     }
 }
 
-/// A vertex of every path holds one: no model may make it bigger for all (keep tables and constants in the scene).
+/// A vertex of every path holds one, as big as the biggest, a coat: tables and constants stay in the scene.
 const _: () = assert!(size_of::<Bsdf>() <= 112);
 
 /// A complex index \[1\] with this reflectance at normal incidence: 1 and `k = 2√r / √(1 − r)`, `r` in [0, 0.9999] (pbrt's

@@ -2,11 +2,12 @@
 
 use plotters::{
     coord::Shift,
-    prelude::{ChartBuilder, DrawingArea, DrawingBackend, PathElement, SeriesLabelPosition, Text},
-    style::{BLACK, Color, WHITE},
+    prelude::{ChartBuilder, DrawingArea, DrawingBackend, PathElement, Text},
+    style::{BLACK, Color},
 };
 
 use super::report::COLORS;
+use crate::legend;
 
 /// Lines around a middle.
 #[derive(Debug)]
@@ -60,12 +61,6 @@ impl Polar {
                 .label(line.name)
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.9))
-            .border_style(BLACK.mix(0.3))
-            .label_font(("sans-serif", 15))
-            .draw()
+        legend::draw(&mut chart)
     }
 }

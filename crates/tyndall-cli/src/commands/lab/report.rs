@@ -7,7 +7,6 @@ use plotters::{
     coord::Shift,
     prelude::{
         ChartBuilder, DrawingArea, DrawingBackend, IntoDrawingArea, IntoLogRange, PathElement, RGBColor, SVGBackend,
-        SeriesLabelPosition,
     },
     style::{BLACK, Color, WHITE},
 };
@@ -16,7 +15,7 @@ use tyndall_formats::film::{png, save};
 use tyndall_lab::run::Estimate;
 
 use super::polar::Polar;
-use crate::canvas::Canvas;
+use crate::{canvas::Canvas, legend};
 
 /// All figures of an experiment.
 #[derive(Debug, Serialize)]
@@ -273,11 +272,5 @@ fn draw_panel<B: DrawingBackend>(
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(1)));
         }
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.9))
-        .border_style(BLACK.mix(0.3))
-        .label_font(("sans-serif", 15))
-        .draw()
+    legend::draw(&mut chart)
 }

@@ -8,14 +8,14 @@ use plotters::{
     coord::Shift,
     prelude::{
         ChartBuilder, Circle, DrawingArea, DrawingBackend, IntoDrawingArea, IntoLogRange, LineSeries, PathElement,
-        RGBColor, SVGBackend, SeriesLabelPosition,
+        RGBColor, SVGBackend,
     },
     style::{BLACK, Color, WHITE},
 };
 use tyndall_formats::film::{png, save};
 
 use super::Chapter;
-use crate::canvas::Canvas;
+use crate::{canvas::Canvas, legend};
 
 const SIZE: (u32, u32) = (1100, 480);
 
@@ -86,13 +86,7 @@ fn draw_chapter<B: DrawingBackend>(
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
         chart.draw_series(points.iter().map(|&at| Circle::new(at, 3, color.filled())))?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.9))
-        .border_style(BLACK.mix(0.3))
-        .label_font(("sans-serif", 15))
-        .draw()
+    legend::draw(&mut chart)
 }
 
 /// Labels of the axes: `100`, `0.1`.

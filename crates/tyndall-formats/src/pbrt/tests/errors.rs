@@ -58,7 +58,7 @@ fn what_pbrt_knows_and_this_reader_does_not_yet_is_said_to_be_so() {
         ),
         (
             "Material \"hair\" \"float eumelanin\" 1.3",
-            "1:21 the material \"hair\" is not supported yet [supported are \"coatedconductor\", \"coateddiffuse\", \"conductor\", \"dielectric\", \"diffuse\", \"diffusetransmission\", \"interface\", \"mix\", \"subsurface\", \"thindielectric\"]",
+            "1:21 the material \"hair\" is not supported yet [supported are \"coatedconductor\", \"coateddiffuse\", \"conductor\", \"dielectric\", \"diffuse\", \"diffusetransmission\", \"interface\", \"measured\", \"mix\", \"subsurface\", \"thindielectric\"]",
         ),
         (
             "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\"",

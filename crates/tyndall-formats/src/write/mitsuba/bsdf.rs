@@ -29,6 +29,7 @@ pub(super) fn word(kind: &MaterialKind) -> &'static str {
         MaterialKind::Principled(_) => "principled",
         MaterialKind::PrincipledThin(_) => "principledthin",
         MaterialKind::Coated(_) => "coated",
+        MaterialKind::Measured { .. } => "measured",
         MaterialKind::Embossed { map: ReliefMap::Heights { .. }, .. } => "bumpmap",
         MaterialKind::Embossed { map: ReliefMap::Normals(_), .. } => "normalmap",
     }
@@ -77,6 +78,7 @@ impl Pen<'_, '_> {
                 | MaterialKind::Conductor { .. }
                 | MaterialKind::Plastic { .. }
                 | MaterialKind::Principled(_)
+                | MaterialKind::Measured { .. }
         );
         let mirrored =
             matches!(material.kind, MaterialKind::Embossed { rule: Rule::Mitsuba { mirrored: true, .. }, .. });
@@ -141,6 +143,10 @@ impl Pen<'_, '_> {
             MaterialKind::Coated(_) => {
                 self.lacks(span, "a base under a coat (pbrt's \"coateddiffuse\" and \"coatedconductor\")");
                 Element::plugin("bsdf", "diffuse")
+            }
+            MaterialKind::Measured { path } => {
+                let file = self.draft.relative(&path.value, path.span);
+                Element::plugin("bsdf", "measured").around(Element::parameter("string", "filename", &file))
             }
             MaterialKind::Embossed { of, map, rule } => self.relief(of, map, *rule, span),
             MaterialKind::Interface => Element::plugin("bsdf", "null"),

@@ -118,6 +118,10 @@ impl Pen<'_, '_> {
     ) -> Element {
         let mut element = Element::plugin("sensor", if lens.is_some() { "thinlens" } else { "perspective" });
         element.extend(field_of_view(fov.value, frame.axis));
+        if lens.is_none() {
+            element.float_unless("principal_point_offset_x", frame.offset[0], 0.0);
+            element.float_unless("principal_point_offset_y", frame.offset[1], 0.0);
+        }
         self.whole_window(camera, frame);
         if let Some(lens) = lens {
             element.float("aperture_radius", lens.radius);
@@ -129,7 +133,7 @@ impl Pen<'_, '_> {
     /// Mitsuba's picture is that of the film.
     fn whole_window(&mut self, camera: &CameraDesc, frame: &FrameDesc) {
         let film = &self.draft.desc.film;
-        let whole = FrameDesc::of_film(frame.axis);
+        let whole = FrameDesc { offset: frame.offset, ..FrameDesc::of_film(frame.axis) };
         let kind = match &camera.kind {
             CameraKind::Perspective { fov, lens, .. } => {
                 CameraKind::Perspective { fov: *fov, frame: whole, lens: *lens }

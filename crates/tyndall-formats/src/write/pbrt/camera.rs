@@ -79,6 +79,9 @@ impl Pen<'_, '_> {
             self.smaller_fov(camera)
         };
         entity.float_unless("fov", fov, 90.0);
+        if frame.offset != [0.0; 2] {
+            self.lacks(camera.span, "a principal point beside the middle of the picture");
+        }
         window(&mut entity, frame);
         if let Some(lens) = lens {
             entity.float("lensradius", lens.radius);

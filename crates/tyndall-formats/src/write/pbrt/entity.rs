@@ -3,7 +3,7 @@
 use crate::write::number::{double, doubles, single};
 use crate::write::sheet::Sheet;
 
-/// Directives that are shorter stand on one line [characters].
+/// Directives that are shorter stand on one line, in characters.
 const LINE: usize = 100;
 /// Numbers of long lists on a line.
 const NUMBERS: usize = 12;

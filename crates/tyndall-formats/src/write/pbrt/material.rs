@@ -28,6 +28,7 @@ pub(super) fn word(kind: &MaterialKind) -> &'static str {
             BaseDesc::Diffuse(_) => "coateddiffuse",
             BaseDesc::Conductor { .. } => "coatedconductor",
         },
+        MaterialKind::Measured { .. } => "measured",
         MaterialKind::Embossed { .. } => "embossed",
     }
 }
@@ -84,6 +85,10 @@ impl Pen<'_, '_> {
             MaterialKind::Principled(_) => return self.stand_in(name, span, "the material \"principled\""),
             MaterialKind::PrincipledThin(_) => return self.stand_in(name, span, "the material \"principledthin\""),
             MaterialKind::Coated(coated) => self.coated(&mut entity, coated),
+            MaterialKind::Measured { path } => {
+                self.both_sides(material);
+                entity.string("filename", &self.draft.relative(&path.value, path.span));
+            }
             MaterialKind::Embossed { of, map, rule } => {
                 if *rule != Rule::Pbrt {
                     self.draft.differs(span, "pbrt has other rules for reliefs that would turn light round");

@@ -4,7 +4,7 @@
 //! More than [`WHOLE`] entries are first divided into clusters in space ([`super::divide`]), each small enough for the
 //! caches of a processor and built on its own, many at a time; a tree over the clusters joins them. How they are divided
 //! depends on the entries alone, so any number of threads builds the same tree. Its cost by the surface area heuristic is
-//! 2 to 3 % above that of the whole (a bumpy sphere of 10⁶ triangles), the time less than a half on one core.
+//! 2 to 3 % above that of the whole (a bumpy sphere of 10⁶ triangles).
 
 use obvhs::{
     aabb::Aabb,
