@@ -237,8 +237,8 @@ Examples:
   tyndall verify --json report.json   every figure with expectation, standard error and z
 
 A figure is measured with its standard error, and z is its deviation from the table in such errors. The verdict is over
-all figures of all tables together: the greatest |z|, the χ² and the mean shift of every table, corrected for their
-number. Exit status: 0 reproduced, 1 not reproduced, 2 failed.")]
+all figures of all tables together: the greatest |z|, and for every table whether its figures are off in one direction
+(shift), reflectances against transmittances (tilt), or in any direction (χ²), corrected for the number of these tests. Exit status: 0 reproduced, 1 not reproduced, 2 failed.")]
 pub(crate) struct VerifyOptions {
     /// Every figure, instead of a part of them
     #[arg(long)]
@@ -258,6 +258,9 @@ pub(crate) struct VerifyOptions {
     /// Write all figures as JSON to a file, or to standard output with -
     #[arg(long, value_name = "FILE|-")]
     pub(crate) json: Option<PathBuf>,
+    /// Write a page with tables and plots into a directory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,

@@ -1,10 +1,8 @@
 //! A scattering ball: what of the light sent at it, or made in it, is absorbed or escapes.
 
 use glam::DVec3;
-use tyndall::{
-    math::{Ray, Vec3},
-    scene::Scene,
-};
+use tyndall::math::{Ray, Vec3};
+use tyndall::scene::Scene;
 
 use crate::photon::{Collision, Detector, Photon, shoot};
 use crate::point::{any_direction, source_stream};
@@ -31,6 +29,10 @@ pub struct Balance {
     pub escaped: Estimate,
     /// Part that leaves without a collision \[1\].
     pub unscattered: Estimate,
+    /// Of what leaves, power times the cosine between the way out and the beam's way in \[1\].
+    pub forward: Estimate,
+    /// The way that light has in the ball, for each photon that is sent [length]; 0 where nothing can collide.
+    pub way: Estimate,
     /// Part that leaves after 0, 1, 2, … collisions \[1\].
     pub by_order: Vec<Estimate>,
 }
@@ -41,15 +43,19 @@ struct Recorder {
 
 /// Orders that are kept apart.
 const ORDERS: usize = 16;
+/// Quantities before them.
+const OTHERS: usize = 4;
 
 impl Detector for Recorder {
     fn collide(&mut self, c: &Collision) {
         self.totals[0] += c.absorbed;
+        self.totals[3] += c.weight;
     }
 
     fn leave(&mut self, photon: &Photon) {
         self.totals[1] += photon.weight();
-        if let Some(total) = self.totals.get_mut(2 + photon.order() as usize) {
+        self.totals[2] -= photon.weight() * f64::from(photon.dir().z);
+        if let Some(total) = self.totals.get_mut(OTHERS + photon.order() as usize) {
             *total += photon.weight();
         }
     }
@@ -71,20 +77,10 @@ pub fn balance(
     seed: u64,
     look: impl FnMut(&Sums) -> Verdict,
 ) -> Result<Balance, SetupError> {
-    let scene = scene(substance, radius, source)?;
-    let recorder = || Recorder { totals: vec![0.0; 2 + ORDERS] };
-    let ray = |photon| ray_of(source, radius as f32, photon, seed);
-    let sums = shoot(&scene, photons, seed, ray, recorder, look);
-    Ok(Balance {
-        photons: sums.photons(),
-        absorbed: sums.estimate(0),
-        escaped: sums.estimate(1),
-        unscattered: sums.estimate(2),
-        by_order: sums.estimates(2..2 + ORDERS),
-    })
+    Ok(balance_in(&scene(substance, radius, source)?, substance, radius, source, photons, seed, look))
 }
 
-/// The world of a ball.
+/// The ball, with photons that start where the source is.
 pub(crate) fn scene(substance: &Substance, radius: f64, source: Source) -> Result<Scene, SetupError> {
     within("the radius", radius, "positive", |r| r > 0.0 && r.is_finite())?;
     let mut world = World::default();
@@ -92,6 +88,31 @@ pub(crate) fn scene(substance: &Substance, radius: f64, source: Source) -> Resul
     match source {
         Source::Beam => world.build(&Substance::VACUUM, 2.0 * radius * DVec3::Z),
         Source::Volume => world.build(substance, DVec3::ZERO),
+    }
+}
+
+/// The same in a scene that is made already.
+pub(crate) fn balance_in(
+    scene: &Scene,
+    substance: &Substance,
+    radius: f64,
+    source: Source,
+    photons: u64,
+    seed: u64,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Balance {
+    let recorder = || Recorder { totals: vec![0.0; OTHERS + ORDERS] };
+    let ray = |photon| ray_of(source, radius as f32, photon, seed);
+    let sums = shoot(scene, photons, seed, ray, recorder, look);
+    let free_path = if substance.sigma_t() > 0.0 { 1.0 / substance.sigma_t() } else { 0.0 };
+    Balance {
+        photons: sums.photons(),
+        absorbed: sums.estimate(0),
+        escaped: sums.estimate(1),
+        forward: sums.estimate(2),
+        way: sums.estimate(3).scaled(free_path),
+        unscattered: sums.estimate(OTHERS),
+        by_order: sums.estimates(OTHERS..OTHERS + ORDERS),
     }
 }
 

@@ -10,6 +10,7 @@ use glam::DVec3;
 use tyndall::{
     math::{Ray, Vec3},
     sampling::rng::Rng,
+    scene::Scene,
 };
 
 use crate::photon::{Collision, Detector, shoot};
@@ -39,9 +40,10 @@ impl Detector for Recorder<'_> {
         if (1..self.radii.len()).contains(&shell) {
             self.totals[shell - 1] += c.weight;
         }
-        let last = self.totals.len() - 2;
+        let last = self.totals.len() - 3;
         self.totals[last] += c.weight;
         self.totals[last + 1] += c.weight * r * r;
+        self.totals[last + 2] += c.weight * r.powi(4);
     }
 
     fn totals(self) -> Vec<f64> {
@@ -60,6 +62,8 @@ pub struct Fluence {
     pub m0: Estimate,
     /// `∫ 4π r² φ r² dr` [length³].
     pub m2: Estimate,
+    /// `∫ 4π r² φ r⁴ dr` [length⁵].
+    pub m4: Estimate,
 }
 
 /// Measures the fluence between each of `radii` [length] and the next; they increase.
@@ -79,10 +83,26 @@ pub fn fluence(
     crate::world::within("the absorption coefficient", substance.sigma_a, "positive, or light never ends", |s| {
         s > 0.0
     })?;
-    let scene = World::default().build(substance, DVec3::ZERO)?;
-    let recorder = || Recorder { radii, totals: vec![0.0; radii.len() + 1] };
+    Ok(fluence_in(&scene(substance)?, substance, radii, photons, seed, look))
+}
+
+/// Nothing but the medium.
+pub(crate) fn scene(substance: &Substance) -> Result<Scene, SetupError> {
+    World::default().build(substance, DVec3::ZERO)
+}
+
+/// The same in a scene that is made already.
+pub(crate) fn fluence_in(
+    scene: &Scene,
+    substance: &Substance,
+    radii: &[f64],
+    photons: u64,
+    seed: u64,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Fluence {
+    let recorder = || Recorder { radii, totals: vec![0.0; radii.len() + 2] };
     let ray = |photon| Ray::new(Vec3::ZERO, any_direction(photon, seed));
-    let sums = shoot(&scene, photons, seed, ray, recorder, look);
+    let sums = shoot(scene, photons, seed, ray, recorder, look);
     let by_sigma = 1.0 / substance.sigma_t();
     let shell = |(i, w): (usize, &[f64])| Shell {
         inner: w[0],
@@ -90,12 +110,13 @@ pub fn fluence(
         fluence: sums.estimate(i).scaled(by_sigma / (w[1] - w[0])),
     };
     let last = radii.len() - 1;
-    Ok(Fluence {
+    Fluence {
         photons: sums.photons(),
         shells: radii.windows(2).enumerate().map(shell).collect(),
         m0: sums.estimate(last).scaled(by_sigma),
         m2: sums.estimate(last + 1).scaled(by_sigma),
-    })
+        m4: sums.estimate(last + 2).scaled(by_sigma),
+    }
 }
 
 /// A direction of an isotropic source, from a stream that the photon's own walk does not use.

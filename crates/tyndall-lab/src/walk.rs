@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 use tyndall::math::{Ray, Vec3};
+use tyndall::scene::Scene;
 
 use crate::photon::{Collision, Detector, shoot};
 use crate::run::{Estimate, Sums, Verdict};
@@ -67,9 +68,24 @@ pub fn moments(
     if flights.is_empty() || flights.contains(&0) {
         return Err(SetupError::Missing("number of flights"));
     }
-    let scene = World::default().build(&Substance::of_albedo(1.0, g), DVec3::ZERO)?;
+    Ok(moments_in(&scene(g)?, flights, photons, seed, look))
+}
+
+/// Nothing but a medium that does not absorb, of mean free path 1.
+pub(crate) fn scene(g: f64) -> Result<Scene, SetupError> {
+    World::default().build(&Substance::of_albedo(1.0, g), DVec3::ZERO)
+}
+
+/// The same in a scene that is made already.
+pub(crate) fn moments_in(
+    scene: &Scene,
+    flights: &[u32],
+    photons: u64,
+    seed: u64,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Vec<Moments> {
     let recorder = || Recorder { flights, totals: vec![0.0; 3 * flights.len()] };
-    let sums = shoot(&scene, photons, seed, |_| Ray::new(Vec3::ZERO, Vec3::Z), recorder, look);
+    let sums = shoot(scene, photons, seed, |_| Ray::new(Vec3::ZERO, Vec3::Z), recorder, look);
     let moment = |i: usize, n: u32| Moments {
         flights: n,
         photons: sums.photons(),
@@ -77,5 +93,5 @@ pub fn moments(
         r2: sums.estimate(3 * i + 1),
         z2: sums.estimate(3 * i + 2),
     };
-    Ok(flights.iter().enumerate().map(|(i, n)| moment(i, *n)).collect())
+    flights.iter().enumerate().map(|(i, n)| moment(i, *n)).collect()
 }

@@ -1,5 +1,6 @@
 //! `cargo xtask bench`: the figures that tyndall promises, measured on this machine, peers in the same minutes.
 
+mod lab;
 mod lights;
 mod mesh;
 mod rays;
@@ -37,6 +38,8 @@ pub(crate) enum Bench {
     Threads,
     /// Error times time of 10,000 emissive triangles beside that of ten (at most 2 times)
     Lights,
+    /// Photons a second and ns a collision of `tyndall lab`, beside a bare loop that only collides
+    Lab,
     /// Reading and building a mesh of ten million triangles (under 15 s and 4 GiB)
     Mesh,
     /// MSE · N against N: our roulette keeps the variance finite where Mitsuba's does not
@@ -47,7 +50,16 @@ pub(crate) enum Bench {
 pub(crate) fn run(options: &Options) -> Result<()> {
     std::fs::create_dir_all(root().join("target/bench"))?;
     println!("machine: {}", machine());
-    let all = [Bench::Startup, Bench::Threads, Bench::Rays, Bench::Scenes, Bench::Lights, Bench::Mesh, Bench::Roulette];
+    let all = [
+        Bench::Startup,
+        Bench::Threads,
+        Bench::Rays,
+        Bench::Scenes,
+        Bench::Lights,
+        Bench::Lab,
+        Bench::Mesh,
+        Bench::Roulette,
+    ];
     match options.bench {
         Some(bench) => run_one(bench, options.quick),
         None => all.into_iter().try_for_each(|bench| run_one(bench, options.quick)),
@@ -62,6 +74,7 @@ fn run_one(bench: Bench, quick: bool) -> Result<()> {
         Bench::Mesh => mesh::run(&Tyndall::find()?, if quick { 1 } else { 3 }),
         Bench::Startup => startup::run(&Tyndall::find()?, if quick { 5 } else { 20 }),
         Bench::Threads => threads::run(&Tyndall::find()?, if quick { 2 } else { 5 }),
+        Bench::Lab => lab::run(&Tyndall::find()?, if quick { 1 } else { 5 }),
         Bench::Roulette => roulette::run(&Tyndall::find()?, if quick { 4.0 } else { 60.0 }),
     }
 }

@@ -55,7 +55,7 @@ impl Tyndall {
 
 /// CPU seconds of all threads of all children that have ended: fields 16 and 17 of `/proc/self/stat`, in ticks of
 /// 10 ms. Measured from outside, so the start and the reading of the scene count against tyndall.
-fn children_cpu_seconds() -> Result<f64> {
+pub(crate) fn children_cpu_seconds() -> Result<f64> {
     const TICKS_PER_SECOND: f64 = 100.0;
     let text = std::fs::read_to_string("/proc/self/stat").context("CPU time of children is read from /proc (Linux)")?;
     let after_name = text.rsplit_once(')').context("a name in /proc/self/stat")?.1;

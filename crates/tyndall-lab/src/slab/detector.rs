@@ -89,13 +89,17 @@ fn first_surface(setup: &Setup) -> f64 {
         Incidence::Beam(_) if eta == 1.0 => 0.0,
         Incidence::Beam(1.0) => ((eta - 1.0) / (eta + 1.0)).powi(2),
         Incidence::Beam(cosine) => at(cosine),
-        // Midpoints of equal parts of cos²: as light that is the same from all sides falls on a plane.
-        Incidence::Diffuse => {
-            const PARTS: u32 = 4096;
-            let part = |i: u32| at(((f64::from(i) + 0.5) / f64::from(PARTS)).sqrt());
-            (0..PARTS).map(part).sum::<f64>() / f64::from(PARTS)
-        }
+        Incidence::Diffuse => mean_over_powers(1.0, at),
+        Incidence::Power(k) => mean_over_powers(k, at),
     }
+}
+
+/// The mean of a function of the cosine μ of the incidence, where the power per cosine is `(k + 1) μᵏ`: over the midpoints
+/// of equal parts of it.
+fn mean_over_powers(k: f64, at: impl Fn(f64) -> f64) -> f64 {
+    const PARTS: u32 = 4096;
+    let part = |i: u32| at(((f64::from(i) + 0.5) / f64::from(PARTS)).powf(1.0 / (k + 1.0)));
+    (0..PARTS).map(part).sum::<f64>() / f64::from(PARTS)
 }
 
 /// The totals of a batch.

@@ -43,6 +43,8 @@ pub enum Incidence {
     Beam(f64),
     /// The same radiance from all directions of the half-space above.
     Diffuse,
+    /// Power `(k + 1) μᵏ` per cosine μ to the normal: k = 1 is diffuse light, k = 0 what a plane of isotropic sources sends.
+    Power(f64),
 }
 
 /// An experiment.
@@ -164,11 +166,21 @@ pub fn measure(
     look: impl FnMut(&Sums) -> Verdict,
 ) -> Result<Measured, SetupError> {
     setup.check()?;
-    let scene = setup.scene()?;
+    Ok(measure_in(&setup.scene()?, setup, photons, seed, look))
+}
+
+/// The same in a scene that is made already.
+pub(crate) fn measure_in(
+    scene: &Scene,
+    setup: &Setup,
+    photons: u64,
+    seed: u64,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Measured {
     let layout = Layout::new(setup);
     let recorder = || Recorder::new(setup, &layout);
-    let sums = shoot(&scene, photons, seed, |photon| setup.ray(photon, seed), recorder, look);
-    Ok(layout.read(setup, &sums))
+    let sums = shoot(scene, photons, seed, |photon| setup.ray(photon, seed), recorder, look);
+    layout.read(setup, &sums)
 }
 
 impl Setup {
@@ -201,6 +213,9 @@ impl Setup {
         }
         if let Incidence::Beam(cosine) = self.incidence {
             within("the cosine of the incidence", cosine, "greater than 0, and at most 1", |c| c > 0.0 && c <= 1.0)?;
+        }
+        if let Incidence::Power(k) = self.incidence {
+            within("the power of the cosine", k, "at least 0, and at most 100", |k| (0.0..=100.0).contains(&k))?;
         }
         self.bins.check()
     }
@@ -235,6 +250,7 @@ impl Setup {
         let cosine = match self.incidence {
             Incidence::Beam(cosine) => cosine as f32,
             Incidence::Diffuse => source_stream(photon, seed).next_positive().sqrt(),
+            Incidence::Power(k) => source_stream(photon, seed).next_positive().powf(1.0 / (k as f32 + 1.0)),
         };
         let dir = Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, -cosine);
         Ray::new(-dir * self.height() as f32, dir)

@@ -1,81 +1,43 @@
 //! Slabs and half-spaces.
 
+use super::experiment::{Check, Effort, Experiment, Share};
+use super::late::{self, returns_late};
 use super::table::{Row, edges, grouped, rows};
-use super::{Check, Effort, Experiment, Share};
 use crate::run::Estimate;
-use crate::slab::{Edges, Incidence, Measured, Setup, measure};
+use crate::slab::{Edges, Incidence, Setup};
 use crate::world::{SetupError, Substance};
 
 /// Accuracy of the tables of totals.
 const TABLE: f64 = 5e-7;
 
-/// The experiment on one layer.
-fn run(setup: &Setup, share: Share) -> Result<Measured, SetupError> {
-    // The first quantities are what leaves.
-    measure(setup, share.photons, share.seed, share.look(0..6))
-}
+pub(super) const SLABS: &str = include_str!("../../data/slab_RT_iadpython_grid.csv");
 
 pub(super) fn slabs(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
-    let table = rows(include_str!("../../data/slab_RT_iadpython_grid.csv"));
+    let table = rows(SLABS);
     let mut experiments = Vec::new();
     for (number, row) in table.iter().enumerate().step_by(effort.every) {
         let [albedo, tau, g, n] = ["albedo", "tau", "g", "n"].map(|column| row.number(column));
-        if returns_late(albedo, tau) {
-            continue;
-        }
         let substance = Substance { n, ..Substance::of_albedo(albedo, g) };
         for (incidence, what) in [(Incidence::Beam(1.0), "coll"), (Incidence::Diffuse, "diff")] {
             let setup = Setup::one(substance, tau, incidence);
             let number = 2 * number + usize::from(what == "diff");
+            let effort = if tau > 10.0 && albedo > 0.99 { effort.long() } else { effort };
+            let name = |quantity: &str| format!("{quantity}_{what}, albedo {albedo}, tau {tau}, g {g}, n {n}");
+            let expected = |quantity: &str| row.number(&format!("{quantity}_{what}"));
             experiments.push(effort.experiment(family, number, |share| {
-                let m = run(&setup, share)?;
-                let mut figures = vec![("R", m.reflectance)];
-                figures.extend((what == "coll").then_some(("Ru", m.specular)));
-                figures.extend(tau.is_finite().then_some(("T", m.transmittance)));
-                let check = |(quantity, measured)| Check {
-                    family,
-                    name: format!("{quantity}_{what}, albedo {albedo}, tau {tau}, g {g}, n {n}"),
-                    expected: row.number(&format!("{quantity}_{what}")),
-                    uncertainty: TABLE,
-                    measured,
-                };
-                Ok(figures.into_iter().map(check).collect())
+                if returns_late(albedo, tau) {
+                    let m = late::measure(share, &setup)?;
+                    return Ok(vec![Check::new(name("R"), expected("R"), late::ACCURACY, m.reflectance)]);
+                }
+                let m = share.slab(&setup)?;
+                let check =
+                    |quantity: &str, measured| Check::new(name(quantity), expected(quantity), TABLE, measured).binned();
+                let mut checks = vec![check("R", m.reflectance)];
+                checks.extend((what == "coll").then(|| check("Ru", m.specular)));
+                checks.extend(tau.is_finite().then(|| check("T", m.transmittance).falling()));
+                Ok(checks)
             })?);
         }
-    }
-    Ok(experiments)
-}
-
-/// From a half-space that absorbs nothing every photon returns, but after a time without mean: no experiment that ends
-/// measures that it is all of them.
-fn returns_late(albedo: f64, tau: f64) -> bool {
-    albedo == 1.0 && tau.is_infinite()
-}
-
-pub(super) fn half_spaces(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
-    let table = rows(include_str!("../../data/chandrasekhar_albedo.csv"));
-    let mut experiments = Vec::new();
-    for (number, row) in table.iter().enumerate().step_by(effort.every) {
-        let albedo = row.number("albedo");
-        let mu0 = row.word("mu0");
-        let incidence = if mu0 == "diffuse" { Incidence::Diffuse } else { Incidence::Beam(row.number("mu0")) };
-        if returns_late(albedo, f64::INFINITY) {
-            continue;
-        }
-        let mut setup = Setup::one(Substance::of_albedo(albedo, 0.0), f64::INFINITY, incidence);
-        setup.bins.orders = 3;
-        experiments.push(effort.experiment(family, number, |share| {
-            let m = run(&setup, share)?;
-            let figures = [("R", m.reflectance), ("R1", m.reflectance_by_order[1]), ("R2", m.reflectance_by_order[2])];
-            let check = |(column, measured)| Check {
-                family,
-                name: format!("{column}, albedo {albedo}, mu0 {mu0}"),
-                expected: row.number(column),
-                uncertainty: 1e-9,
-                measured,
-            };
-            Ok(figures.into_iter().map(check).collect())
-        })?);
     }
     Ok(experiments)
 }
@@ -91,25 +53,21 @@ fn mcml(row: &Row) -> Setup {
 const MCML_TOTALS: &str = include_str!("../../data/mcml_totals_vs_adding.csv");
 
 pub(super) fn mcml_totals(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
-    let table = rows(MCML_TOTALS);
+    let (table, effort) = (rows(MCML_TOTALS), effort.long());
     let experiment = |(number, row): (usize, &Row)| {
         let setup = mcml(row);
         let case = row.word("case");
         effort.experiment(family, number, |share| {
-            let m = run(&setup, share)?;
+            let m = share.slab(&setup)?;
             let diffuse = Estimate { mean: m.reflectance.mean - m.first_surface, ..m.reflectance };
-            let mut figures = vec![("Rd", "Rd_exact", diffuse)];
-            if setup.layers[0].thickness.is_finite() {
-                figures.push(("T", "Tt_exact", m.transmittance));
-            }
-            let check = |(quantity, column, measured)| Check {
-                family,
-                name: format!("{quantity}, {case}"),
-                expected: row.number(column),
-                uncertainty: TABLE,
-                measured,
+            let check = |quantity: &str, column: &str, measured| {
+                Check::new(format!("{quantity}, {case}"), row.number(column), TABLE, measured).binned()
             };
-            Ok(figures.into_iter().map(check).collect())
+            let mut checks = vec![check("Rd", "Rd_exact", diffuse)];
+            if setup.layers[0].thickness.is_finite() {
+                checks.push(check("T", "Tt_exact", m.transmittance).falling());
+            }
+            Ok(checks)
         })
     };
     table.iter().enumerate().map(experiment).collect()
@@ -120,20 +78,20 @@ pub(super) fn by_angle(family: &'static str, effort: Effort) -> Result<Vec<Exper
     let table = rows(include_str!("../../data/mcml_angular_vdh.csv"));
     let mut setup = mcml(&totals[0]);
     setup.bins.angles = table.len();
+    // 60 bins share the photons of one experiment: it gets those of many, whatever the totals say.
+    let effort = Effort { error: 0.0, ..effort.times(20) };
     let experiment = effort.experiment(family, 0, |share| {
-        // 60 bins share the photons of one experiment: it gets those of many.
-        let m = run(&setup, Share { photons: 20 * share.photons, ..share })?;
+        let m = share.slab(&setup)?;
         let mut checks = Vec::new();
         for (i, row) in table.iter().enumerate() {
             let alpha = row.word("alpha_mid_deg");
-            let mut add = |quantity: &str, column: &str, measured| {
-                let (name, expected) = (format!("{quantity} at {alpha}°"), row.number(column));
-                checks.push(Check { family, name, expected, uncertainty: TABLE, measured });
+            let check = |quantity: &str, column: &str, measured| {
+                Check::new(format!("{quantity} at {alpha}°"), row.number(column), TABLE, measured).binned()
             };
-            add("Rd", "Rd_exact", m.reflectance_by_angle[i]);
+            checks.push(check("Rd", "Rd_exact", m.reflectance_by_angle[i]));
             // The first bin of the transmittance has the unscattered beam, and is a total of the table before.
             if i > 0 {
-                add("Td", "Tt_exact_diffuse", m.transmittance_by_angle[i]);
+                checks.push(check("Td", "Tt_exact_diffuse", m.transmittance_by_angle[i]).falling());
             }
         }
         Ok(checks)
@@ -144,22 +102,21 @@ pub(super) fn by_angle(family: &'static str, effort: Effort) -> Result<Vec<Exper
 pub(super) fn by_radius(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
     let totals = rows(MCML_TOTALS);
     let table = rows(include_str!("../../data/mcml_R_of_r.csv"));
+    // Rings share the photons of an experiment: the totals must not end it.
+    let effort = Effort { error: 0.0, ..effort };
     let mut experiments = Vec::new();
     for (number, (case, rings)) in grouped(&table, |row| row.word("case")).into_iter().enumerate() {
         let Some(total) = totals.iter().find(|row| row.word("case") == case) else { continue };
         let mut setup = mcml(total);
         setup.bins.radii = Edges(edges(&rings));
-        experiments.push(effort.experiment(family, number, |share| {
-            let m = run(&setup, share)?;
+        experiments.push(effort.experiment(family, number, |share: Share| {
+            let m = share.slab(&setup)?;
             let check = |ring: &&Row| {
                 let bin @ [inner, outer] = ["r_lo", "r_hi"].map(|column| ring.number(column));
                 let found = setup.bins.radii.find(f64::midpoint(inner, outer))?;
-                (setup.bins.radii.bin(found) == bin).then(|| Check {
-                    family,
-                    name: format!("R(r), {case}, r {inner} to {outer}"),
-                    expected: ring.number("R"),
-                    uncertainty: ring.number("se"),
-                    measured: m.reflectance_by_radius[found],
+                let name = format!("R(r), {case}, r {inner} to {outer}");
+                (setup.bins.radii.bin(found) == bin).then(|| {
+                    Check::new(name, ring.number("R"), ring.number("se"), m.reflectance_by_radius[found]).binned()
                 })
             };
             Ok(rings.iter().filter_map(check).collect())

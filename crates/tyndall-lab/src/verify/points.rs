@@ -1,10 +1,15 @@
 //! Point sources in an infinite medium.
 
+use super::experiment::{Check, Effort, Experiment, Share};
 use super::table::{Row, edges, grouped, rows};
-use super::{Check, Effort, Experiment};
-use crate::point;
+use crate::point::{self, Fluence};
 use crate::run::Verdict;
 use crate::world::{SetupError, Substance};
+
+fn around(share: Share, substance: &Substance, radii: &[f64]) -> Result<Fluence, SetupError> {
+    let scene = share.scene(point::scene(substance)?);
+    Ok(point::fluence_in(&scene, substance, radii, share.photons, share.seed, |_| Verdict::GoOn))
+}
 
 pub(super) fn fluence(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
     let table = rows(include_str!("../../data/point_source_hg_deon_mc.csv"));
@@ -13,14 +18,14 @@ pub(super) fn fluence(family: &'static str, effort: Effort) -> Result<Vec<Experi
         let substance = Substance::of_albedo(shells[0].number("c"), shells[0].number("g"));
         let radii = edges(&shells);
         effort.experiment(family, number, |share| {
-            let m = point::fluence(&substance, &radii, share.photons, share.seed, |_| Verdict::GoOn)?;
+            let m = around(share, &substance, &radii)?;
             let check = |row: &&Row| {
                 let bin @ [inner, outer] = [row.number("r_lo"), row.number("r_hi")];
                 let shell = m.shells.iter().find(|shell| [shell.inner, shell.outer] == bin)?;
                 let exact = row.number("exact");
                 let known = if exact.is_nan() { [row.number("mc"), row.number("se")] } else { [exact, 1e-7] };
                 let name = format!("4πr²φ, albedo {c}, g {g}, r {inner} to {outer}");
-                Some(Check { family, name, expected: known[0], uncertainty: known[1], measured: shell.fluence })
+                Some(Check::new(name, known[0], known[1], shell.fluence).binned())
             };
             Ok(shells.iter().filter_map(check).collect())
         })
@@ -34,15 +39,19 @@ pub(super) fn moments(family: &'static str, effort: Effort) -> Result<Vec<Experi
         let albedo = row.number("c");
         let substance = Substance::of_albedo(albedo, 0.0);
         effort.experiment(family, number, |share| {
-            let m = point::fluence(&substance, &[0.0, 1.0], share.photons, share.seed, |_| Verdict::GoOn)?;
-            let check = |(column, measured): (&str, _)| Check {
-                family,
-                name: format!("{}, albedo {albedo}", column.trim_end_matches("_exact")),
-                expected: row.number(column),
-                uncertainty: 0.0,
-                measured,
+            let m = around(share, &substance, &[0.0, 1.0])?;
+            let check = |column: &str, measured| {
+                // The table prints nine digits.
+                let expected = row.number(column);
+                Check::new(
+                    format!("{}, albedo {albedo}", column.trim_end_matches("_exact")),
+                    expected,
+                    1e-9 * expected,
+                    measured,
+                )
+                .binned()
             };
-            Ok([("M0_exact", m.m0), ("M2_exact", m.m2)].into_iter().map(check).collect())
+            Ok(vec![check("M0_exact", m.m0), check("M2_exact", m.m2), check("M4_exact", m.m4)])
         })
     };
     table.iter().enumerate().map(experiment).collect()

@@ -22,7 +22,17 @@ impl Row<'_> {
 pub(crate) fn rows(text: &str) -> Vec<Row<'_>> {
     let mut lines = text.lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty());
     let columns: Vec<&str> = lines.next().unwrap_or("").split(',').collect();
-    lines.map(|line| Row(columns.iter().copied().zip(line.split(',')).collect())).collect()
+    lines.map(|line| Row(columns.iter().copied().zip(cells(line)).collect())).collect()
+}
+
+/// The cells of a line; commas between quotes belong to the cell.
+fn cells(line: &str) -> impl Iterator<Item = &str> {
+    let mut quoted = false;
+    let is_border = move |c: char| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    };
+    line.split(is_border).map(|cell| cell.trim_matches('"'))
 }
 
 /// Rows of one key each, in the order of the keys.

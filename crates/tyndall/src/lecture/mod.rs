@@ -17,6 +17,7 @@
 //! - A Dirac lobe (mirror, smooth glass) is never met by a direction drawn from elsewhere: it is sampled in all versions.
 //! - Lights without extent (point, spot, distant) are never met by a ray: only the versions 1.0 see them.
 //! - The surface estimators ignore media.
+//! - Media scatter and absorb, and do not glow.
 //! - A recursion deeper than [`MAX_DEPTH`] is cut, and what it lost is tallied.
 
 mod primitives;

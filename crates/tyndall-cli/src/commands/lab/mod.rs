@@ -9,6 +9,7 @@ mod polar;
 mod report;
 
 use std::{
+    io::Read,
     path::Path,
     process::ExitCode,
     time::{Duration, Instant},
@@ -46,7 +47,7 @@ pub(crate) fn run(instrument: &Instrument) -> anyhow::Result<ExitCode> {
         Instrument::Sphere(o) => &o.measurement,
         Instrument::Walk(o) => &o.measurement,
     };
-    measurement.check()?;
+    measurement.check_files()?;
     let done = |report: Report| Ok((vec![report], ExitCode::SUCCESS));
     let (reports, exit) = pool(measurement.threads)?.install(|| match instrument {
         Instrument::Slab(options) => Ok((slabs(options)?, ExitCode::SUCCESS)),
@@ -93,23 +94,21 @@ fn tell(reports: &[Report], measurement: &Measurement) -> anyhow::Result<()> {
 }
 
 impl Measurement {
+    /// Whether the files could be written: better known before the experiment than after it.
+    fn check_files(&self) -> anyhow::Result<()> {
+        for file in [&self.json, &self.csv, &self.plot].into_iter().flatten().filter(|file| **file != Path::new("-")) {
+            save::check(file)?;
+        }
+        match &self.plot {
+            Some(file) => report::check_plot(file),
+            None => Ok(()),
+        }
+    }
+
     /// Photons at most, if the experiment itself says nothing.
     fn most_photons(&self, own: Option<u64>) -> u64 {
         let unlimited = self.time.is_some() || self.error.is_some();
         self.photons.or(own).unwrap_or(if unlimited { u64::MAX >> 8 } else { PHOTONS })
-    }
-
-    /// Whether everything could be written: better known before an experiment than after it.
-    fn check(&self) -> anyhow::Result<()> {
-        let named = [&self.json, &self.csv, &self.plot].into_iter().flatten();
-        for file in named.filter(|file| file.as_path() != Path::new("-")) {
-            save::check(file)?;
-        }
-        if let Some(plot) = &self.plot {
-            let ending = plot.extension().and_then(|ending| ending.to_str());
-            ensure!(matches!(ending, Some("svg" | "png")), "{}: plots are written as .svg or .png", plot.display());
-        }
-        Ok(())
     }
 
     /// Shows how far an experiment is, and ends it when it is time, good enough, or Ctrl-C was pressed.
@@ -158,9 +157,12 @@ fn slabs(options: &SlabOptions) -> anyhow::Result<Vec<Report>> {
         };
         return Ok(vec![slab(title, &setup(options), None, &options.measurement)?]);
     };
-    let size = std::fs::metadata(file).with_context(|| format!("cannot read {}", file.display()))?.len();
-    ensure!(size <= LARGEST_FILE, "{}: {size} bytes are too many for an input file of MCML", file.display());
-    let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+    // Devices and pipes do not tell their size: no more is read than an input file can have.
+    let cannot_read = || format!("cannot read {}", file.display());
+    let mut bytes = Vec::new();
+    let mut source = std::fs::File::open(file).with_context(cannot_read)?.take(LARGEST_FILE + 1);
+    source.read_to_end(&mut bytes).with_context(cannot_read)?;
+    ensure!(bytes.len() as u64 <= LARGEST_FILE, "{} is too long for an input file of MCML", file.display());
     let text = std::str::from_utf8(&bytes).with_context(|| format!("{} is not text", file.display()))?;
     let runs = mci::read(text).with_context(|| format!("{} is no input file of MCML 1.2", file.display()))?;
     let report = |run: mci::Run| slab(run.output.clone(), &run.setup, Some(run.photons), &options.measurement);
@@ -198,6 +200,8 @@ fn slab(title: String, setup: &Setup, own: Option<u64>, measurement: &Measuremen
     ];
     let exact = Estimate { mean: m.first_surface, standard_error: 0.0 };
     figures.push(figure("first surface alone", "", exact));
+    let collisions = Estimate { mean: m.collisions as f64 / m.photons as f64, standard_error: 0.0 };
+    figures.push(figure("collisions", "a photon, counted", collisions));
     figures.extend(m.absorbed.iter().enumerate().map(|(i, a)| figure(format!("absorbed in layer {}", i + 1), "", *a)));
     Ok(Report { title, photons: m.photons, figures, curves: curves(setup, &m), verdict: None, polar: None })
 }

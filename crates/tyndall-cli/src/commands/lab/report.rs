@@ -162,6 +162,14 @@ impl Report {
     }
 }
 
+/// Whether a name is one that plots can have.
+pub(crate) fn check_plot(path: &Path) -> anyhow::Result<()> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("svg" | "png") => Ok(()),
+        _ => bail!("{}: plots are written as .svg or .png", path.display()),
+    }
+}
+
 impl Report {
     fn draw<B: DrawingBackend>(
         &self,
