@@ -28,6 +28,25 @@ pub fn ln(x: f32) -> f32 {
     f + y + 0.693_359_4 * e
 }
 
+/// `eˣ` for `x ≤ 88`; relative error below 2·10⁻⁷; 0 where the result would be denormal.
+///
+/// Argument reduction to `[−½ ln 2, ½ ln 2]` and the polynomial of Cephes `expf` (Moshier 1989).
+#[inline]
+pub fn exp(x: f32) -> f32 {
+    let held = x.max(-88.0);
+    let n = (held * std::f32::consts::LOG2_E + 0.5).floor();
+    let r = held - n * 0.693_359_4 + n * 2.121_944_4e-4;
+    let mut p = 1.987_569_1e-4;
+    p = p * r + 1.398_2e-3;
+    p = p * r + 8.333_452e-3;
+    p = p * r + 4.166_579_6e-2;
+    p = p * r + 1.666_666_5e-1;
+    p = p * r + 5e-1;
+    let y = p * r * r + r + 1.0;
+    let power = f32::from_bits(((n as i32 + 127) as u32) << 23);
+    if x < -87.0 { 0.0 } else { y * power }
+}
+
 /// `(sin 2πu, cos 2πu)` for `u` in `[0, 1]`; absolute error below 2·10⁻⁷.
 #[inline]
 pub fn sin_cos_turn(u: f32) -> (f32, f32) {
@@ -60,6 +79,16 @@ mod tests {
             assert!((f64::from(ln(x)) / f64::from(x).ln() - 1.0).abs() < 2e-7, "{x}");
         }
         assert_eq!(ln(1.0), 0.0);
+    }
+
+    #[test]
+    fn the_exponential_agrees_with_double_precision() {
+        for i in -8_700_000..=8_800_000i32 {
+            let x = i as f32 / 100_000.0;
+            let exact = f64::from(x).exp();
+            assert!((f64::from(exp(x)) / exact - 1.0).abs() < 2e-7, "exp({x})");
+        }
+        assert_eq!((exp(0.0), exp(-1e4), exp(f32::NEG_INFINITY)), (1.0, 0.0, 0.0));
     }
 
     #[test]

@@ -32,6 +32,18 @@ pub const fn mix64(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// Random bits as a number in `[0, 1)`, 24 bits of it.
+#[inline]
+pub fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// Random bits as a number in `(0, 1]`.
+#[inline]
+pub fn positive(bits: u32) -> f32 {
+    (bits as f32 + 0.5) * (1.0 / 4_294_967_296.0)
+}
+
 impl Rng {
     /// The stream of one sample of one pixel: the same on any thread, in any order.
     #[inline]
@@ -41,24 +53,31 @@ impl Rng {
         Self { key: [key as u32, (key >> 32) as u32], counter: 0 }
     }
 
+    /// The 32 random bits that come after `ahead` others.
+    #[inline]
+    pub fn peek(self, ahead: u32) -> u32 {
+        let i = self.counter.wrapping_add(ahead);
+        mix(mix(i.wrapping_mul(0x9e37_79b9) ^ self.key[0]).wrapping_add(self.key[1]))
+    }
+
     /// The next 32 random bits.
     #[inline]
     pub fn next_u32(&mut self) -> u32 {
-        let i = self.counter;
-        self.counter = i.wrapping_add(1);
-        mix(mix(i.wrapping_mul(0x9e37_79b9) ^ self.key[0]).wrapping_add(self.key[1]))
+        let bits = self.peek(0);
+        self.counter = self.counter.wrapping_add(1);
+        bits
     }
 
     /// Uniform in `[0, 1)`, 24 bits.
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
+        unit(self.next_u32())
     }
 
     /// Uniform in `(0, 1]`, 32 bits: the argument of a logarithm.
     #[inline]
     pub fn next_positive(&mut self) -> f32 {
-        (self.next_u32() as f32 + 0.5) * (1.0 / 4_294_967_296.0)
+        positive(self.next_u32())
     }
 }
 

@@ -1,0 +1,75 @@
+//! One collision of a walk, written so that a compiler can do it for many lanes at once: no branch, no library call.
+
+use super::{End, Walker};
+use crate::{
+    math::{Vec3, fast},
+    phase::deflect,
+    sampling::rng::{positive, unit},
+};
+
+/// `k` of [`super`]: light samples are certain where the transmittance may be above 1/3.
+pub(super) const ODDS: f32 = 3.0;
+
+/// The probability of a light sample where the transmittance to any light is at most `exp(−tau)`.
+#[inline(always)]
+pub(crate) fn light_odds(light: f32, tau: f32) -> f32 {
+    (light * fast::exp(-tau)).min(1.0)
+}
+
+pub(super) const GOES_ON: u32 = 0;
+const LEAVES: u32 = 1;
+const LIGHT: u32 = 2;
+const ROULETTE: u32 = 3;
+
+/// What [`collide`] has said.
+#[inline(always)]
+pub(super) fn end(code: u32) -> Option<End> {
+    match code {
+        LEAVES => Some(End::Leaves),
+        LIGHT => Some(End::Light),
+        ROULETTE => Some(End::Roulette),
+        _ => None,
+    }
+}
+
+/// Flies and collides, and turns if the walk goes on.
+///
+/// Where the flight leaves the ball, nothing but [`Walker::flight`] and the random numbers change; where the walk ends at
+/// a collision, the direction is still that of the flight that led there.
+#[inline(always)]
+pub(super) fn collide(w: &mut Walker, cosine: impl Fn(f32) -> f32) -> u32 {
+    w.flight = -fast::ln(positive(w.rng.peek(0))) * w.mean_free_path;
+    let p = w.p + w.dir * w.flight;
+    let room = w.ball.radius - length(p - w.ball.centre);
+    let leaves = room.is_nan() | (room <= 0.0);
+    let is_lit = positive(w.rng.peek(1)) <= light_odds(w.light, w.sigma_min * room.max(0.0));
+    let is_due = w.collisions + 1 >= w.limit;
+    let cos_theta = cosine(unit(w.rng.peek(2)));
+    let dir = deflect(w.dir, cos_theta, unit(w.rng.peek(3)));
+
+    let at_collision = if is_lit { LIGHT } else { ROULETTE };
+    let goes_on = !leaves & !is_lit & !is_due;
+    let code = if goes_on { GOES_ON } else if leaves { LEAVES } else { at_collision };
+    w.p = select(leaves, w.p, p);
+    w.length += if leaves { 0.0 } else { w.flight };
+    w.collisions += u32::from(!leaves);
+    w.dir = select(goes_on, dir, w.dir);
+    w.cos_theta = if goes_on { cos_theta } else { w.cos_theta };
+    let drawn = if goes_on { 4 } else if leaves { 1 } else { 2 };
+    w.rng.counter = w.rng.counter.wrapping_add(drawn);
+    code
+}
+
+#[inline(always)]
+fn select(first: bool, a: Vec3, b: Vec3) -> Vec3 {
+    Vec3::new(
+        if first { a.x } else { b.x },
+        if first { a.y } else { b.y },
+        if first { a.z } else { b.z },
+    )
+}
+
+#[inline(always)]
+fn length(v: Vec3) -> f32 {
+    (v.x * v.x + v.y * v.y + v.z * v.z).sqrt()
+}
