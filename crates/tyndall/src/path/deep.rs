@@ -115,7 +115,7 @@ impl Path {
             ball,
             mean_free_path: 1.0 / depths.sigma_t,
             sigma_min: depths.sigma_min,
-            light: depths.light,
+            lit: depths.lit,
             collisions: 0,
             limit: depths.limit.min(allowed),
             length: 0.0,
@@ -163,6 +163,14 @@ impl Path {
             }
             _ => None,
         }
+    }
+
+    /// Whether a flight that has left the ball of a walk stays in a ball of its own.
+    #[inline]
+    pub(super) fn is_free(&mut self, scene: &Scene, flight: f32) -> bool {
+        let (Some(depths), p) = (self.around.depths, self.ray.origin) else { return false };
+        self.around.ball = Ball::around(scene, p, depths.farthest());
+        flight < self.around.ball.radius
     }
 
     /// The flight that a walk has left under way [length].

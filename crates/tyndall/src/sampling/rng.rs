@@ -1,8 +1,10 @@
 //! The stream of random numbers that a path owns: counter-based, so that it has no state to share and any number of it
 //! can be computed alone, in any lane.
 //!
-//! Output `i` is two rounds of Wellons' *lowbias32* hash (bias 0.17, 2018) of the counter, each keyed with half of a
-//! 64-bit key made from pixel, sample and seed. Only 32-bit products, so 16 lanes run at once.
+//! Numbers come in blocks of four, as many as a collision wants. Block `b` is a round of Wellons' *lowbias32* hash (bias
+//! 0.17, 2018) of `b`, keyed with half of a 64-bit key made from pixel, sample and seed; number `j` of the block is a second
+//! round of that plus the other half of the key and `j` steps of a Weyl sequence. Only 32-bit products, so 16 lanes run at
+//! once.
 
 /// A stream of 2³² uniform numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +34,15 @@ pub const fn mix64(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// 2³² divided by the golden ratio.
+const WEYL: u32 = 0x9e37_79b9;
+
+/// Number `j` of a block.
+#[inline]
+const fn number(block: u32, j: u32) -> u32 {
+    mix(block.wrapping_add(j.wrapping_mul(WEYL)))
+}
+
 /// Random bits as a number in `[0, 1)`, 24 bits of it.
 #[inline]
 pub fn unit(bits: u32) -> f32 {
@@ -53,19 +64,27 @@ impl Rng {
         Self { key: [key as u32, (key >> 32) as u32], counter: 0 }
     }
 
-    /// The 32 random bits that come after `ahead` others.
-    #[inline]
-    pub fn peek(self, ahead: u32) -> u32 {
-        let i = self.counter.wrapping_add(ahead);
-        mix(mix(i.wrapping_mul(0x9e37_79b9) ^ self.key[0]).wrapping_add(self.key[1]))
-    }
-
     /// The next 32 random bits.
     #[inline]
     pub fn next_u32(&mut self) -> u32 {
-        let bits = self.peek(0);
+        let bits = number(self.block(), self.counter % 4);
         self.counter = self.counter.wrapping_add(1);
         bits
+    }
+
+    /// Four times 32 random bits, from the next whole block.
+    #[inline]
+    pub fn next_four(&mut self) -> [u32; 4] {
+        self.counter = self.counter.wrapping_add(3) & !3;
+        let block = self.block();
+        self.counter = self.counter.wrapping_add(4);
+        [number(block, 0), number(block, 1), number(block, 2), number(block, 3)]
+    }
+
+    /// What the numbers of the block have in common that is under way.
+    #[inline]
+    fn block(self) -> u32 {
+        mix((self.counter / 4).wrapping_mul(WEYL) ^ self.key[0]).wrapping_add(self.key[1])
     }
 
     /// Uniform in `[0, 1)`, 24 bits.

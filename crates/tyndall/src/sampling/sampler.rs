@@ -50,7 +50,7 @@ impl Sampler {
     fn block<const N: usize>(&mut self, domain: i32) -> [f32; N] {
         match &self.points {
             Some(points) => points.new_domain(domain).draw_sample_f32::<N>(),
-            None => std::array::from_fn(|_| self.rng.next_1d()),
+            None => self.random(),
         }
     }
 
@@ -59,8 +59,18 @@ impl Sampler {
         if vertex < Self::STRATIFIED_VERTICES {
             self.block(2 + 4 * vertex as i32 + purpose)
         } else {
-            std::array::from_fn(|_| self.rng.next_1d())
+            self.random()
         }
+    }
+
+    /// Written as a loop: closures over arrays are not always inlined.
+    #[inline]
+    fn random<const N: usize>(&mut self) -> [f32; N] {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.rng.next_1d();
+        }
+        numbers
     }
 
     /// Place in the pixel (two) and on the lens (two).

@@ -42,7 +42,7 @@ const FARTHEST: f32 = 64.0;
 /// Least room for a walk to begin [mean free paths].
 const ROOM: f32 = 0.5;
 /// Most collisions between two games of roulette.
-const MOST_COLLISIONS: f32 = 64.0;
+const MOST_COLLISIONS: f32 = 256.0;
 /// What a throughput may fall to between two games of roulette \[1\].
 const LEAST_THROUGHPUT: f32 = 0.25;
 
@@ -84,8 +84,8 @@ pub struct Depths {
     pub sigma_t: f32,
     /// The least of all lanes [1/length].
     pub sigma_min: f32,
-    /// `k` where light can be reached, else 0.
-    pub light: f32,
+    /// Whether light can be reached.
+    pub lit: bool,
     /// Collisions between two games of roulette.
     pub limit: u32,
     /// `ln(σ_t / σ_t,hero)` in each lane.
@@ -125,7 +125,7 @@ impl Depths {
             id,
             sigma_t: extinction,
             sigma_min: sigma_t.min_lane(),
-            light: if scene.light_can_reach(Some(id)) { step::ODDS } else { 0.0 },
+            lit: scene.light_can_reach(Some(id)),
             limit: if limit < MOST_COLLISIONS { (limit as u32).max(1) } else { MOST_COLLISIONS as u32 },
             log_extinction: (sigma_t / extinction).map(log),
             log_albedo: albedo.map(log),
@@ -148,7 +148,7 @@ impl Depths {
     /// The probability of a light sample at a point with this room [length].
     #[inline]
     pub fn odds(&self, room: f32) -> f32 {
-        light_odds(self.light, self.sigma_min * room)
+        if self.lit { light_odds(self.sigma_min * room) } else { 0.0 }
     }
 
     /// The weights of `collisions` after flights of total `length` [length].
@@ -177,8 +177,8 @@ pub struct Walker {
     pub mean_free_path: f32,
     /// The least `σ_t` of all lanes [1/length].
     pub sigma_min: f32,
-    /// `k` where light can be reached, else 0.
-    pub light: f32,
+    /// Whether light can be reached.
+    pub lit: bool,
     /// Collisions so far.
     pub collisions: u32,
     /// After so many it ends.
@@ -206,7 +206,9 @@ impl Walker {
     /// Follows a walk to its end.
     pub fn alone(&mut self, phase: &Phase) -> End {
         loop {
-            if let Some(end) = step::end(step::collide(self, |u| phase.sample(u))) {
+            let cosine = |u| phase.sample(u);
+            let code = if self.lit { step::collide::<true>(self, cosine) } else { step::collide::<false>(self, cosine) };
+            if let Some(end) = step::end(code) {
                 return end;
             }
         }

@@ -8,12 +8,12 @@ use crate::{
 };
 
 /// `k` of [`super`]: light samples are certain where the transmittance may be above 1/3.
-pub(super) const ODDS: f32 = 3.0;
+pub(super) const ODDS: f32 = 1.0;
 
 /// The probability of a light sample where the transmittance to any light is at most `exp(−tau)`.
 #[inline(always)]
-pub(crate) fn light_odds(light: f32, tau: f32) -> f32 {
-    (light * fast::exp(-tau)).min(1.0)
+pub(crate) fn light_odds(tau: f32) -> f32 {
+    (ODDS * fast::exp(-tau)).min(1.0)
 }
 
 pub(super) const GOES_ON: u32 = 0;
@@ -35,17 +35,18 @@ pub(super) fn end(code: u32) -> Option<End> {
 /// Flies and collides, and turns if the walk goes on.
 ///
 /// Where the flight leaves the ball, nothing but [`Walker::flight`] and the random numbers change; where the walk ends at
-/// a collision, the direction is still that of the flight that led there.
+/// a collision, the direction is still that of the flight that led there. `LIT` says whether light can be reached.
 #[inline(always)]
-pub(super) fn collide(w: &mut Walker, cosine: impl Fn(f32) -> f32) -> u32 {
-    w.flight = -fast::ln(positive(w.rng.peek(0))) * w.mean_free_path;
+pub(super) fn collide<const LIT: bool>(w: &mut Walker, cosine: impl Fn(f32) -> f32) -> u32 {
+    let [u_flight, u_light, u_cosine, u_azimuth] = w.rng.next_four();
+    w.flight = -fast::ln(positive(u_flight)) * w.mean_free_path;
     let p = w.p + w.dir * w.flight;
     let room = w.ball.radius - length(p - w.ball.centre);
     let leaves = room.is_nan() | (room <= 0.0);
-    let is_lit = positive(w.rng.peek(1)) <= light_odds(w.light, w.sigma_min * room.max(0.0));
+    let is_lit = LIT && positive(u_light) <= light_odds(w.sigma_min * room.max(0.0));
     let is_due = w.collisions + 1 >= w.limit;
-    let cos_theta = cosine(unit(w.rng.peek(2)));
-    let dir = deflect(w.dir, cos_theta, unit(w.rng.peek(3)));
+    let cos_theta = cosine(unit(u_cosine));
+    let dir = deflect(w.dir, cos_theta, unit(u_azimuth));
 
     let at_collision = if is_lit { LIGHT } else { ROULETTE };
     let goes_on = !leaves & !is_lit & !is_due;
@@ -55,8 +56,6 @@ pub(super) fn collide(w: &mut Walker, cosine: impl Fn(f32) -> f32) -> u32 {
     w.collisions += u32::from(!leaves);
     w.dir = select(goes_on, dir, w.dir);
     w.cos_theta = if goes_on { cos_theta } else { w.cos_theta };
-    let drawn = if goes_on { 4 } else if leaves { 1 } else { 2 };
-    w.rng.counter = w.rng.counter.wrapping_add(drawn);
     code
 }
 

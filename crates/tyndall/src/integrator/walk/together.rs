@@ -9,17 +9,29 @@ use crate::{math::Vec3, medium::MediumId, phase::Phase, sampling::Rng};
 /// Lanes: what the widest instruction set does at once.
 pub(crate) const WIDTH: usize = 16;
 
+/// Runs the walks of a school for one model of phase functions.
+macro_rules! swim {
+    ($school:expr, $level:expr, $model:expr, $least:expr, $ended:expr) => {
+        if $school.lit {
+            dispatch!($level, simd => $school.run::<_, true>(simd, |u| $model.sample(u), $least, &mut $ended))
+        } else {
+            dispatch!($level, simd => $school.run::<_, false>(simd, |u| $model.sample(u), $least, &mut $ended))
+        }
+    };
+}
+
 /// Walks under way in one medium, each with the number of its path.
 #[derive(Debug)]
 pub(crate) struct School {
     level: Level,
     medium: MediumId,
+    lit: bool,
     waiting: Vec<(u32, Walker)>,
 }
 
 impl School {
-    pub(crate) fn new(medium: MediumId) -> Self {
-        Self { level: Level::new(), medium, waiting: Vec::new() }
+    pub(crate) fn new(medium: MediumId, lit: bool) -> Self {
+        Self { level: Level::new(), medium, lit, waiting: Vec::new() }
     }
 
     pub(crate) fn medium(&self) -> MediumId {
@@ -38,18 +50,16 @@ impl School {
     pub(crate) fn swim(&mut self, phase: &Phase, least: usize, mut ended: impl FnMut(u32, &Walker, End)) {
         let level = self.level;
         match phase {
-            Phase::Isotropic(model) => dispatch!(level, simd => self.run(simd, |u| model.sample(u), least, &mut ended)),
-            Phase::HenyeyGreenstein(model) => {
-                dispatch!(level, simd => self.run(simd, |u| model.sample(u), least, &mut ended));
-            }
-            Phase::Rayleigh(model) => dispatch!(level, simd => self.run(simd, |u| model.sample(u), least, &mut ended)),
-            Phase::Tabulated(model) => dispatch!(level, simd => self.run(simd, |u| model.sample(u), least, &mut ended)),
-            Phase::Blend(model) => dispatch!(level, simd => self.run(simd, |u| model.sample(u), least, &mut ended)),
+            Phase::Isotropic(model) => swim!(self, level, model, least, ended),
+            Phase::HenyeyGreenstein(model) => swim!(self, level, model, least, ended),
+            Phase::Rayleigh(model) => swim!(self, level, model, least, ended),
+            Phase::Tabulated(model) => swim!(self, level, model, least, ended),
+            Phase::Blend(model) => swim!(self, level, model, least, ended),
         }
     }
 
     #[inline(always)]
-    fn run<S: Simd>(
+    fn run<S: Simd, const LIT: bool>(
         &mut self,
         simd: S,
         cosine: impl Fn(f32) -> f32 + Copy,
@@ -65,21 +75,24 @@ impl School {
         while swimming > 0 && swimming + self.waiting.len() >= least {
             let codes = simd.vectorize(
                 #[inline(always)]
-                || lanes.collide(cosine),
+                || lanes.collide::<LIT>(cosine),
             );
+            if codes.iter().fold(0, |any, code| any | code) == step::GOES_ON {
+                continue;
+            }
             for lane in 0..WIDTH {
                 if codes[lane] == step::GOES_ON || paths[lane] == NOBODY {
                     continue;
                 }
                 if let Some(end) = step::end(codes[lane]) {
-                    ended(paths[lane], &lanes.get(lane, self.medium), end);
+                    ended(paths[lane], &lanes.get(lane, self.medium, LIT), end);
                 }
                 swimming -= usize::from(!self.fill(&mut lanes, &mut paths, lane));
             }
         }
         for lane in 0..WIDTH {
             if paths[lane] != NOBODY {
-                self.waiting.push((paths[lane], lanes.get(lane, self.medium)));
+                self.waiting.push((paths[lane], lanes.get(lane, self.medium, LIT)));
             }
         }
     }
@@ -114,7 +127,6 @@ struct Lanes {
     radius: [f32; WIDTH],
     mean_free_path: [f32; WIDTH],
     sigma_min: [f32; WIDTH],
-    light: [f32; WIDTH],
     length: [f32; WIDTH],
     flight: [f32; WIDTH],
     cos_theta: [f32; WIDTH],
@@ -126,18 +138,18 @@ struct Lanes {
 
 impl Lanes {
     #[inline(always)]
-    fn collide(&mut self, cosine: impl Fn(f32) -> f32 + Copy) -> [u32; WIDTH] {
+    fn collide<const LIT: bool>(&mut self, cosine: impl Fn(f32) -> f32 + Copy) -> [u32; WIDTH] {
         let mut codes = [0; WIDTH];
         for lane in 0..WIDTH {
-            let mut walker = self.get(lane, MediumId(0));
-            codes[lane] = step::collide(&mut walker, cosine);
+            let mut walker = self.get(lane, MediumId(0), LIT);
+            codes[lane] = step::collide::<LIT>(&mut walker, cosine);
             self.set(lane, &walker);
         }
         codes
     }
 
     #[inline(always)]
-    fn get(&self, i: usize, medium: MediumId) -> Walker {
+    fn get(&self, i: usize, medium: MediumId, lit: bool) -> Walker {
         let vector = |v: &[[f32; WIDTH]; 3]| Vec3::new(v[0][i], v[1][i], v[2][i]);
         Walker {
             medium,
@@ -147,7 +159,7 @@ impl Lanes {
             ball: Ball { centre: vector(&self.centre), radius: self.radius[i] },
             mean_free_path: self.mean_free_path[i],
             sigma_min: self.sigma_min[i],
-            light: self.light[i],
+            lit,
             collisions: self.collisions[i],
             limit: self.limit[i],
             length: self.length[i],
@@ -165,7 +177,6 @@ impl Lanes {
         self.radius[i] = walker.ball.radius;
         self.mean_free_path[i] = walker.mean_free_path;
         self.sigma_min[i] = walker.sigma_min;
-        self.light[i] = walker.light;
         self.length[i] = walker.length;
         self.flight[i] = walker.flight;
         self.cos_theta[i] = walker.cos_theta;
