@@ -261,8 +261,8 @@ fn to_triangles<S: Simd>(simd: S, packet: &Packet, p: Vec3) -> (f32x8<S>, mask32
     let n = cross(ca, ab);
     let square = dot(n, n);
     let length = square.sqrt();
-    let above = |edge: Vectors<S>, from: Vectors<S>| dot(cross(n, edge), from).simd_le(zero);
-    let inside = above(ab, a) & above(bc, b) & above(ca, c) & square.simd_gt(zero);
+    let [over_ab, over_bc, over_ca] = [dot(cross(n, ab), a), dot(cross(n, bc), b), dot(cross(n, ca), c)];
+    let inside = over_ab.max(over_bc).max(over_ca).simd_le(zero) & square.simd_gt(zero);
     let height = dot(n, a).abs() / length;
     let distance = inside.select(height.min(edges.sqrt()), edges.sqrt());
 
