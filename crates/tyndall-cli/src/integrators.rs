@@ -10,9 +10,8 @@ use crate::args::IntegratorName;
 /// The estimator of a name. `max_depth`, a limit on the scatterings of a path that are `counted`, is for `volpath` alone.
 pub(crate) fn integrator(name: IntegratorName, max_depth: Option<u32>, counted: Counted) -> Box<dyn Integrator> {
     let lecture = |version: Lecture| -> Box<dyn Integrator> { Box::new(version) };
-    let volpath = |deep: Deep| -> Box<dyn Integrator> {
-        Box::new(VolPath { max_depth, counted, deep, ..VolPath::default() })
-    };
+    let volpath =
+        |deep: Deep| -> Box<dyn Integrator> { Box::new(VolPath { max_depth, counted, deep, ..VolPath::default() }) };
     match name {
         IntegratorName::Volpath => volpath(Deep::Together),
         IntegratorName::VolpathAlone => volpath(Deep::Alone),

@@ -5,8 +5,8 @@
 //! There are no lights in an experiment, so a path's response to an event is the walk and nothing else.
 
 use tyndall::{
-    integrator::{CameraSample, VolPath},
     integrator::volpath::Status,
+    integrator::{CameraSample, VolPath},
     math::{Ray, Vec3},
     medium::MediumId,
     path::{Event, Path},

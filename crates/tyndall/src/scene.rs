@@ -71,6 +71,8 @@ struct Facts {
     lit: Vec<bool>,
     /// By medium: a box that it does not reach out of.
     extent: Vec<Bounds>,
+    /// By medium: the greatest clearance in it [length].
+    deepest: Vec<f32>,
     /// Where lights are that are no surfaces; one box for all if they are many.
     bare_lights: Vec<Bounds>,
     /// Bodies with a priority, which may overlap.
@@ -93,6 +95,8 @@ impl Scene {
     ) -> Self {
         let bodies = Body::gather(&mut objects, &materials, &geometry);
         let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], &materials);
+        let extent: Vec<_> =
+            (0..media.len()).map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects, &bodies)).collect();
         let facts = Facts {
             // A surface of a body may not be there.
             has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
@@ -100,9 +104,8 @@ impl Scene {
                 .map(|i| MediumId(i as u32))
                 .map(|m| opens_straight(m, &bodies) || can_be_lit(m, &geometry, &objects, &materials, &lights))
                 .collect(),
-            extent: (0..media.len())
-                .map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects, &bodies))
-                .collect(),
+            deepest: extent.iter().map(|extent| deepest(extent, &geometry)).collect(),
+            extent,
             bare_lights: bare_lights(&lights),
             bodies,
             around_camera: Within::default(),
@@ -186,10 +189,10 @@ impl Scene {
         self.geometry.clearance(p, from_lights.fold(cap, f32::min))
     }
 
-    /// The greatest clearance that there can be in a medium [length].
+    /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.
     #[inline]
     pub fn deepest(&self, medium: MediumId) -> f32 {
-        0.5 * self.facts.extent[medium.0 as usize].extent().min_element()
+        self.facts.deepest[medium.0 as usize]
     }
 
     /// Whether shadow rays must walk through surfaces that let light pass.
@@ -266,6 +269,17 @@ fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Obj
         }
     }
     if camera.medium == Some(medium) { Bounds::EVERYTHING } else { extent }
+}
+
+fn deepest(extent: &Bounds, geometry: &Geometry) -> f32 {
+    let world = geometry.bounds();
+    if *extent != Bounds::EVERYTHING {
+        0.5 * extent.extent().min_element()
+    } else if world.is_empty() {
+        f32::INFINITY
+    } else {
+        0.5 * world.extent().max_element()
+    }
 }
 
 /// The places of lights that no clearance to surfaces tells of.

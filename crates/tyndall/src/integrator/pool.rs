@@ -37,7 +37,10 @@ pub(super) fn estimate(scene: &Scene, settings: &VolPath, samples: &[CameraSampl
         settings,
         paths: Vec::with_capacity(PATHS),
         free: Vec::new(),
-        schools: (0..scene.media.len()).map(|i| MediumId(i as u32)).map(|id| School::new(id, scene.light_can_reach(Some(id)))).collect(),
+        schools: (0..scene.media.len())
+            .map(|i| MediumId(i as u32))
+            .map(|id| School::new(id, scene.light_can_reach(Some(id))))
+            .collect(),
         radiance: vec![Lanes::ZERO; samples.len()],
     };
     let mut samples = samples.iter().enumerate();

@@ -2,7 +2,10 @@
 
 use super::{Event, Path};
 use crate::{
-    integrator::{VolPath, walk::{Ball, Depths, End, Walker}},
+    integrator::{
+        VolPath,
+        walk::{Ball, Depths, End, Walker},
+    },
     light::Reference,
     math::{Ray, Vec3},
     medium::Inside,

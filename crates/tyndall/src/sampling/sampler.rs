@@ -56,11 +56,7 @@ impl Sampler {
 
     #[inline]
     fn vertex_block<const N: usize>(&mut self, vertex: u32, purpose: i32) -> [f32; N] {
-        if vertex < Self::STRATIFIED_VERTICES {
-            self.block(2 + 4 * vertex as i32 + purpose)
-        } else {
-            self.random()
-        }
+        if vertex < Self::STRATIFIED_VERTICES { self.block(2 + 4 * vertex as i32 + purpose) } else { self.random() }
     }
 
     /// Written as a loop: closures over arrays are not always inlined.

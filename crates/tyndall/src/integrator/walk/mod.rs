@@ -207,7 +207,8 @@ impl Walker {
     pub fn alone(&mut self, phase: &Phase) -> End {
         loop {
             let cosine = |u| phase.sample(u);
-            let code = if self.lit { step::collide::<true>(self, cosine) } else { step::collide::<false>(self, cosine) };
+            let code =
+                if self.lit { step::collide::<true>(self, cosine) } else { step::collide::<false>(self, cosine) };
             if let Some(end) = step::end(code) {
                 return end;
             }

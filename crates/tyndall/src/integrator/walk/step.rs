@@ -42,30 +42,32 @@ pub(super) fn collide<const LIT: bool>(w: &mut Walker, cosine: impl Fn(f32) -> f
     w.flight = -fast::ln(positive(u_flight)) * w.mean_free_path;
     let p = w.p + w.dir * w.flight;
     let room = w.ball.radius - length(p - w.ball.centre);
-    let leaves = room.is_nan() | (room <= 0.0);
+    let stays = room > 0.0;
     let is_lit = LIT && positive(u_light) <= light_odds(w.sigma_min * room.max(0.0));
     let is_due = w.collisions + 1 >= w.limit;
     let cos_theta = cosine(unit(u_cosine));
     let dir = deflect(w.dir, cos_theta, unit(u_azimuth));
 
-    let at_collision = if is_lit { LIGHT } else { ROULETTE };
-    let goes_on = !leaves & !is_lit & !is_due;
-    let code = if goes_on { GOES_ON } else if leaves { LEAVES } else { at_collision };
-    w.p = select(leaves, w.p, p);
-    w.length += if leaves { 0.0 } else { w.flight };
-    w.collisions += u32::from(!leaves);
+    let goes_on = stays && !is_lit && !is_due;
+    w.p = select(stays, p, w.p);
+    w.length += if stays { w.flight } else { 0.0 };
+    w.collisions += u32::from(stays);
     w.dir = select(goes_on, dir, w.dir);
     w.cos_theta = if goes_on { cos_theta } else { w.cos_theta };
-    code
+    if goes_on {
+        GOES_ON
+    } else if !stays {
+        LEAVES
+    } else if is_lit {
+        LIGHT
+    } else {
+        ROULETTE
+    }
 }
 
 #[inline(always)]
 fn select(first: bool, a: Vec3, b: Vec3) -> Vec3 {
-    Vec3::new(
-        if first { a.x } else { b.x },
-        if first { a.y } else { b.y },
-        if first { a.z } else { b.z },
-    )
+    Vec3::new(if first { a.x } else { b.x }, if first { a.y } else { b.y }, if first { a.z } else { b.z })
 }
 
 #[inline(always)]

@@ -67,11 +67,7 @@ impl School {
         ended: &mut impl FnMut(u32, &Walker, End),
     ) {
         let mut lanes = Lanes::default();
-        let mut paths = [NOBODY; WIDTH];
-        let mut swimming = 0;
-        for lane in 0..WIDTH {
-            swimming += usize::from(self.fill(&mut lanes, &mut paths, lane));
-        }
+        let mut swimming = (0..WIDTH).filter(|&lane| self.fill(&mut lanes, lane)).count();
         while swimming > 0 && swimming + self.waiting.len() >= least {
             let codes = simd.vectorize(
                 #[inline(always)]
@@ -80,37 +76,29 @@ impl School {
             if codes.iter().fold(0, |any, code| any | code) == step::GOES_ON {
                 continue;
             }
-            for lane in 0..WIDTH {
-                if codes[lane] == step::GOES_ON || paths[lane] == NOBODY {
-                    continue;
+            for (lane, code) in codes.into_iter().enumerate() {
+                let (Some(end), path) = (step::end(code), lanes.path[lane]) else { continue };
+                if path != NOBODY {
+                    ended(path, &lanes.get(lane, self.medium, LIT), end);
+                    swimming -= usize::from(!self.fill(&mut lanes, lane));
                 }
-                if let Some(end) = step::end(codes[lane]) {
-                    ended(paths[lane], &lanes.get(lane, self.medium, LIT), end);
-                }
-                swimming -= usize::from(!self.fill(&mut lanes, &mut paths, lane));
             }
         }
-        for lane in 0..WIDTH {
-            if paths[lane] != NOBODY {
-                self.waiting.push((paths[lane], lanes.get(lane, self.medium, LIT)));
-            }
+        for (lane, path) in lanes.path.into_iter().enumerate().filter(|(_, path)| *path != NOBODY) {
+            self.waiting.push((path, lanes.get(lane, self.medium, LIT)));
         }
     }
 
     /// Gives a lane to the next walk; false if there is none.
     #[inline(always)]
-    fn fill(&mut self, lanes: &mut Lanes, paths: &mut [u32; WIDTH], lane: usize) -> bool {
-        match self.waiting.pop() {
-            Some((path, walker)) => {
-                paths[lane] = path;
-                lanes.set(lane, &walker);
-                true
-            }
-            None => {
-                paths[lane] = NOBODY;
-                false
-            }
-        }
+    fn fill(&mut self, lanes: &mut Lanes, lane: usize) -> bool {
+        let Some((path, walker)) = self.waiting.pop() else {
+            lanes.path[lane] = NOBODY;
+            return false;
+        };
+        lanes.path[lane] = path;
+        lanes.set(lane, &walker);
+        true
     }
 }
 
@@ -121,6 +109,7 @@ const NOBODY: u32 = u32::MAX;
 #[derive(Debug, Clone, Default)]
 #[repr(align(64))]
 struct Lanes {
+    path: [u32; WIDTH],
     p: [[f32; WIDTH]; 3],
     dir: [[f32; WIDTH]; 3],
     centre: [[f32; WIDTH]; 3],
@@ -140,9 +129,9 @@ impl Lanes {
     #[inline(always)]
     fn collide<const LIT: bool>(&mut self, cosine: impl Fn(f32) -> f32 + Copy) -> [u32; WIDTH] {
         let mut codes = [0; WIDTH];
-        for lane in 0..WIDTH {
+        for (lane, code) in codes.iter_mut().enumerate() {
             let mut walker = self.get(lane, MediumId(0), LIT);
-            codes[lane] = step::collide::<LIT>(&mut walker, cosine);
+            *code = step::collide::<LIT>(&mut walker, cosine);
             self.set(lane, &walker);
         }
         codes
@@ -184,5 +173,65 @@ impl Lanes {
         self.counter[i] = walker.rng.counter;
         self.collisions[i] = walker.collisions;
         self.limit[i] = walker.limit;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::phase::{Isotropic, Rayleigh};
+
+    /// The instruction sets of this machine.
+    fn levels() -> [Level; 4] {
+        let best = Level::new();
+        let (sse4_2, avx2) = (best.as_sse4_2().map(Simd::level), best.as_avx2().map(Simd::level));
+        [best, Level::baseline(), sse4_2.unwrap_or(best), avx2.unwrap_or(best)]
+    }
+
+    fn walker(number: u32, medium: MediumId, lit: bool) -> Walker {
+        let dir = Vec3::new(0.6, 0.0, -0.8);
+        Walker {
+            medium,
+            p: Vec3::new(1.0, 2.0, 3.0),
+            dir: if number.is_multiple_of(2) { dir } else { Vec3::Z },
+            rng: Rng::for_sample((number, 0), 0, 1),
+            ball: Ball { centre: Vec3::new(1.0, 2.0, 3.0), radius: 2.0 + number as f32 * 0.1 },
+            mean_free_path: 0.3,
+            sigma_min: 2.0,
+            lit,
+            collisions: 0,
+            limit: 1 + number % 50,
+            length: 0.0,
+            flight: 0.0,
+            cos_theta: 1.0,
+        }
+    }
+
+    /// Every instruction set of this machine gives the bits that one walk after the other gives, for every model.
+    #[test]
+    fn every_instruction_set_walks_alike() {
+        let forward = Phase::henyey_greenstein(0.9).unwrap();
+        let phases = [
+            Phase::Isotropic(Isotropic),
+            forward.clone(),
+            Phase::Rayleigh(Rayleigh),
+            Phase::tabulated(&[0.5, 0.1, 3.0]).unwrap(),
+            Phase::blend(&forward, &Phase::Rayleigh(Rayleigh), 0.5).unwrap(),
+        ];
+        let medium = MediumId(0);
+        for phase in &phases {
+            for (lit, level) in [true, false].into_iter().flat_map(|lit| levels().map(move |level| (lit, level))) {
+                let mut school = School { level, medium, lit, waiting: Vec::new() };
+                (0..100).for_each(|number| school.push(number, walker(number, medium, lit)));
+                let mut ends = 0;
+                school.swim(phase, 1, |number, together, end| {
+                    let mut alone = walker(number, medium, lit);
+                    assert_eq!(alone.alone(phase), end, "{phase:?} {number}");
+                    assert_eq!(alone, *together, "{phase:?} {number}");
+                    ends += 1;
+                });
+                assert_eq!((ends, school.len()), (100, 0));
+            }
+        }
     }
 }
