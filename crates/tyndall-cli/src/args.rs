@@ -277,6 +277,10 @@ pub(crate) struct VerifyOptions {
 pub(crate) enum IntegratorName {
     /// The workhorse: next event estimation, multiple importance sampling, spectral MIS
     Volpath,
+    /// … one path after the other: the same bits
+    VolpathAlone,
+    /// … with a ray for each flight and a light sample at each collision, in dense media too
+    VolpathTraced,
     /// Its naive twin: an oracle of a page
     Analog,
     /// Kajiya-style, surfaces only: walks until the light goes out

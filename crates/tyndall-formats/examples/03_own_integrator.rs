@@ -15,12 +15,12 @@
 use std::{env::args, path::Path};
 
 use tyndall::{
-    integrator::Integrator,
-    math::{Frame, Ray},
+    integrator::{CameraSample, Integrator},
+    math::Frame,
     render::{Settings, render},
-    sampling::{Sampler, warp::cosine_hemisphere},
+    sampling::warp::cosine_hemisphere,
     scene::Scene,
-    spectrum::{ColorMode, Lanes, Wavelengths},
+    spectrum::{ColorMode, Lanes},
     tally::Tally,
 };
 use tyndall_formats::{
@@ -37,7 +37,8 @@ struct Occlusion {
 }
 
 impl Integrator for Occlusion {
-    fn li(&self, scene: &Scene, ray: Ray, _: Wavelengths, _: f32, sampler: &mut Sampler, tally: &mut Tally) -> Lanes {
+    fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
+        let CameraSample { ray, mut sampler, .. } = *seen;
         tally.rays += 1;
         let Some(hit) = scene.geometry.intersect(&ray, f32::INFINITY) else { return Lanes::ZERO };
         let point = scene.geometry.interaction(&ray, &hit);

@@ -5,8 +5,8 @@
 //! There are no lights in an experiment, so a path's response to an event is the walk and nothing else.
 
 use tyndall::{
-    integrator::VolPath,
     integrator::volpath::Status,
+    integrator::{CameraSample, VolPath},
     math::{Ray, Vec3},
     medium::MediumId,
     path::{Event, Path},
@@ -117,7 +117,8 @@ pub(crate) fn shoot<D: Detector>(
 /// Launches the photon number `index` along `ray` and follows it to its end.
 pub fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64, detector: &mut impl Detector, tally: &mut Tally) {
     let sampler = Sampler::new(SamplerKind::Independent, (index as u32, (index >> 32) as u32), 0, seed);
-    let path = Path::new(scene, ray, Wavelengths::Mono, 0.0, sampler);
+    let seen = CameraSample { ray, wavelengths: Wavelengths::Mono, u_hero: 0.0, sampler };
+    let path = Path::new(scene, &seen);
     let mut photon = Photon { at_surface: ray.origin, met: None, path, travelled: 0.0, launched: ray.dir };
     // There are no lights to find.
     let (walk, mut nothing) = (VolPath::default(), Lanes::ZERO);

@@ -11,7 +11,7 @@ use crate::{
     camera::CameraRay,
     feature::FirstHit,
     film::{Cell, Crop, Film, Pixel, Recorded},
-    integrator::Integrator,
+    integrator::{CameraSample, Integrator},
     sampling::{Sampler, SamplerKind},
     scene::Scene,
     spectrum::{Lanes, Wavelengths, film_rgb},
@@ -178,56 +178,71 @@ fn render_tile(
     samples: std::ops::Range<u32>,
     tile: &mut Tile,
 ) {
-    let columns = tile.area.width();
-    let layers = scene.camera.layers.len();
-    for (i, pixel) in tile.pixels.iter_mut().enumerate() {
-        let (x, y) = (tile.area.min.0 + i as u32 % columns, tile.area.min.1 + i as u32 / columns);
-        for index in samples.clone() {
-            let cells = &mut tile.cells[i * layers..(i + 1) * layers];
-            let (radiance, value) = sample_pixel(scene, integrator, settings, (x, y), index, &mut tile.tally, cells);
-            if radiance.is_finite() && radiance.min_lane() >= 0.0 {
-                pixel.add(value);
-            } else {
-                // Counted and located, and left out of the sums, which one such sample would spoil for good.
-                tile.tally.bad_sample((x, y), index, value);
-                pixel.add([0.0; 3]);
-            }
+    let seen: Vec<_> = tile
+        .area
+        .pixels()
+        .flat_map(|pixel| samples.clone().map(move |index| Seen::new(scene, settings, pixel, index)))
+        .collect();
+    tile.tally.paths += seen.len() as u64;
+    let passed: Vec<_> = seen.iter().filter(|seen| seen.camera.weight != 0.0).map(|seen| seen.sample).collect();
+    let mut radiances = integrator.li_many(scene, &passed, &mut tile.tally).into_iter();
+
+    let (layers, per_pixel) = (scene.camera.layers.len(), samples.len());
+    for (i, seen) in seen.iter().enumerate() {
+        let pixel = &mut tile.pixels[i / per_pixel];
+        let radiance = if seen.camera.weight == 0.0 { None } else { radiances.next() };
+        let Some(radiance) = radiance else {
+            pixel.add([0.0; 3]); // the lens stopped it
+            continue;
+        };
+        seen.fill(scene, radiance, &mut tile.cells[i / per_pixel * layers..][..layers]);
+        let value = seen.value(scene, radiance);
+        if radiance.is_finite() && radiance.min_lane() >= 0.0 {
+            pixel.add(value);
+        } else {
+            // Counted and located, and left out of the sums, which one such sample would spoil for good.
+            tile.tally.bad_sample(seen.pixel, seen.index, value);
+            pixel.add([0.0; 3]);
         }
     }
 }
 
-/// One sample of one pixel: radiance, and linear sRGB (which may be negative for a single wavelength, and where the
-/// filter is).
-fn sample_pixel(
-    scene: &Scene,
-    integrator: &dyn Integrator,
-    settings: &Settings,
+/// A sample of a pixel, as the camera sees it.
+struct Seen {
     pixel: (u32, u32),
     index: u32,
-    tally: &mut Tally,
-    cells: &mut [Cell],
-) -> (Lanes, [f32; 3]) {
-    let mut sampler = Sampler::new(settings.sampler, pixel, index, settings.seed);
-    let seen @ CameraRay { ray, weight } = scene.camera.sample_ray(pixel, sampler.camera());
-    let [u_wavelength, u_hero] = sampler.wavelength();
-    let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
-    tally.paths += 1;
-    if weight == 0.0 {
-        return (Lanes::ZERO, [0.0; 3]); // the lens stopped it
+    camera: CameraRay,
+    sample: CameraSample,
+}
+
+impl Seen {
+    fn new(scene: &Scene, settings: &Settings, pixel: (u32, u32), index: u32) -> Self {
+        let mut sampler = Sampler::new(settings.sampler, pixel, index, settings.seed);
+        let camera = scene.camera.sample_ray(pixel, sampler.camera());
+        let [u_wavelength, u_hero] = sampler.wavelength();
+        let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
+        let sample = CameraSample { ray: camera.ray, wavelengths, u_hero, sampler };
+        Self { pixel, index, camera, sample }
     }
-    let radiance = integrator.li(scene, ray, wavelengths, u_hero, &mut sampler, tally);
-    if !cells.is_empty() {
+
+    /// Linear sRGB (which may be negative for a single wavelength, and where the filter is).
+    fn value(&self, scene: &Scene, radiance: Lanes) -> [f32; 3] {
+        let factor = scene.camera.exposure * self.camera.weight;
+        film_rgb(radiance, &self.sample.wavelengths).map(|v| v * factor)
+    }
+
+    /// Adds the sample to the layers of its pixel.
+    fn fill(&self, scene: &Scene, radiance: Lanes, cells: &mut [Cell]) {
+        let (wavelengths, mut sampler) = (&self.sample.wavelengths, self.sample.sampler);
         let mut first = None;
         for (cell, layer) in cells.iter_mut().zip(&scene.camera.layers) {
             cell.add(match layer.recorded {
-                Recorded::Light(bands) => bands.sample(radiance, &wavelengths).map(|v| v * weight),
+                Recorded::Light(bands) => bands.sample(radiance, wavelengths).map(|v| v * self.camera.weight),
                 Recorded::Surface(feature) => {
-                    let first = first.get_or_insert_with(|| FirstHit::of(scene, seen));
-                    first.sample(feature, &wavelengths, &mut sampler)
+                    let first = first.get_or_insert_with(|| FirstHit::of(scene, self.camera));
+                    first.sample(feature, wavelengths, &mut sampler)
                 }
             });
         }
     }
-    let factor = scene.camera.exposure * weight;
-    (radiance, film_rgb(radiance, &wavelengths).map(|v| v * factor))
 }

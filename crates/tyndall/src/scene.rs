@@ -2,7 +2,7 @@
 
 use crate::{
     camera::Camera,
-    light::{AreaLight, LightId, LightTable},
+    light::{AreaLight, Light, LightId, LightTable},
     material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
@@ -71,6 +71,10 @@ struct Facts {
     lit: Vec<bool>,
     /// By medium: a box that it does not reach out of.
     extent: Vec<Bounds>,
+    /// By medium: the greatest clearance in it [length].
+    deepest: Vec<f32>,
+    /// Where lights are that are no surfaces; one box for all if they are many.
+    bare_lights: Vec<Bounds>,
     /// Bodies with a priority, which may overlap.
     bodies: Vec<Body>,
     /// What the camera is in.
@@ -91,6 +95,8 @@ impl Scene {
     ) -> Self {
         let bodies = Body::gather(&mut objects, &materials, &geometry);
         let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], &materials);
+        let extent: Vec<_> =
+            (0..media.len()).map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects, &bodies)).collect();
         let facts = Facts {
             // A surface of a body may not be there.
             has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
@@ -98,9 +104,9 @@ impl Scene {
                 .map(|i| MediumId(i as u32))
                 .map(|m| opens_straight(m, &bodies) || can_be_lit(m, &geometry, &objects, &materials, &lights))
                 .collect(),
-            extent: (0..media.len())
-                .map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects, &bodies))
-                .collect(),
+            deepest: extent.iter().map(|extent| deepest(extent, &geometry)).collect(),
+            extent,
+            bare_lights: bare_lights(&lights),
             bodies,
             around_camera: Within::default(),
         };
@@ -136,7 +142,7 @@ impl Scene {
             Emission::EachPrimitive(first) => LightId(first.0 + hit.prim),
         };
         match self.lights.get(id) {
-            crate::light::Light::Area(light) => Some((id, light)),
+            Light::Area(light) => Some((id, light)),
             _ => None,
         }
     }
@@ -176,9 +182,17 @@ impl Scene {
         self.facts.extent[medium.0 as usize].contains(p)
     }
 
-    /// A lower bound on the distance from `p` to the nearest surface, at most `cap` [length].
+    /// A lower bound on the distance from `p` to the nearest surface and to the nearest light without a surface, at most
+    /// `cap` [length].
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
-        self.geometry.clearance(p, cap)
+        let from_lights = self.facts.bare_lights.iter().map(|bounds| bounds.distance(p));
+        self.geometry.clearance(p, from_lights.fold(cap, f32::min))
+    }
+
+    /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.
+    #[inline]
+    pub fn deepest(&self, medium: MediumId) -> f32 {
+        self.facts.deepest[medium.0 as usize]
     }
 
     /// Whether shadow rays must walk through surfaces that let light pass.
@@ -218,7 +232,7 @@ fn can_be_lit(
             body = body.union(geometry.object_bounds(crate::shape::ObjectId(index as u32)));
         }
     }
-    body.is_empty() || lights.lights.iter().filter_map(crate::light::Light::bounds).any(|b| overlap(&body, &b))
+    body.is_empty() || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(&body, &b))
 }
 
 /// Whether light may leave the bodies of a medium straight: unless each body of the scene has a surface that bends it
@@ -255,6 +269,26 @@ fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Obj
         }
     }
     if camera.medium == Some(medium) { Bounds::EVERYTHING } else { extent }
+}
+
+fn deepest(extent: &Bounds, geometry: &Geometry) -> f32 {
+    let world = geometry.bounds();
+    if *extent != Bounds::EVERYTHING {
+        0.5 * extent.extent().min_element()
+    } else if world.is_empty() {
+        f32::INFINITY
+    } else {
+        0.5 * world.extent().max_element()
+    }
+}
+
+/// The places of lights that no clearance to surfaces tells of.
+fn bare_lights(lights: &LightTable) -> Vec<Bounds> {
+    /// More would cost more than they tell.
+    const MOST: usize = 16;
+    let is_bare = |light: &&Light| !matches!(light, Light::Area(_));
+    let places: Vec<_> = lights.lights.iter().filter(is_bare).filter_map(Light::bounds).collect();
+    if places.len() <= MOST { places } else { vec![places.iter().fold(Bounds::EMPTY, |all, b| all.union(*b))] }
 }
 
 fn overlap(a: &Bounds, b: &Bounds) -> bool {

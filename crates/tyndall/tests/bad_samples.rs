@@ -4,12 +4,11 @@ mod common;
 
 use common::World;
 use tyndall::{
-    integrator::Integrator,
-    math::{Ray, Vec3},
+    integrator::{CameraSample, Integrator},
+    math::Vec3,
     render::{Settings, render},
-    sampling::Sampler,
     scene::Scene,
-    spectrum::{Lanes, Wavelengths},
+    spectrum::Lanes,
     tally::Tally,
 };
 
@@ -18,8 +17,8 @@ use tyndall::{
 struct Faulty(f32);
 
 impl Integrator for Faulty {
-    fn li(&self, _: &Scene, _: Ray, _: Wavelengths, _: f32, sampler: &mut Sampler, tally: &mut Tally) -> Lanes {
-        if sampler.rng.next_1d() < 0.125 {
+    fn li(&self, _: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
+        if { seen.sampler }.rng.next_1d() < 0.125 {
             tally.collisions += 1; // counts the faults
             return Lanes::splat(self.0);
         }

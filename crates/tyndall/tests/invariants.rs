@@ -229,7 +229,7 @@ fn panes_that_are_passed_straight_count_for_a_limit_or_not() {
         let pane = Material::ThinDielectric { eta: Index::Constant(1.5), reflection_tint, transmission_tint };
         world.cuboid(Vec3::new(-50.0, 0.0, -50.0), Vec3::new(50.0, 1.0, 50.0), pane, None);
         world.half_sky(0.0, 1.0);
-        let limited = VolPath { max_depth: Some(max_depth), counted, roulette: 0.0 };
+        let limited = VolPath { max_depth: Some(max_depth), counted, roulette: 0.0, ..VolPath::default() };
         let m = world.measure(&limited, 400_000);
         let name = format!("{counted:?} up to {max_depth}");
         if expected == 0.0 {

@@ -38,6 +38,11 @@ impl Crop {
         self.max.1.saturating_sub(self.min.1)
     }
 
+    /// Row by row.
+    pub fn pixels(self) -> impl Iterator<Item = (u32, u32)> {
+        (self.min.1..self.max.1).flat_map(move |y| (self.min.0..self.max.0).map(move |x| (x, y)))
+    }
+
     /// The part of this crop that lies within an image.
     #[must_use]
     pub fn within(self, width: u32, height: u32) -> Self {

@@ -4,7 +4,7 @@
 //! Lights that a path can run into are found only by running into them. Dirac lights, which no path can run into, are
 //! gathered at each vertex.
 
-use super::{Integrator, in_one_lane};
+use super::{CameraSample, Integrator, in_one_lane};
 use crate::{
     bsdf::Bsdf,
     light::Light,
@@ -23,16 +23,9 @@ use crate::{
 pub struct Analog;
 
 impl Integrator for Analog {
-    fn li(
-        &self,
-        scene: &Scene,
-        ray: Ray,
-        wavelengths: Wavelengths,
-        u_hero: f32,
-        sampler: &mut Sampler,
-        tally: &mut Tally,
-    ) -> Lanes {
-        in_one_lane(scene.color, u_hero, |lane| walk(scene, ray, &wavelengths, lane, sampler, tally))
+    fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
+        let CameraSample { ray, wavelengths, u_hero, mut sampler } = *seen;
+        in_one_lane(scene.color, u_hero, |lane| walk(scene, ray, &wavelengths, lane, &mut sampler, tally))
     }
 }
 

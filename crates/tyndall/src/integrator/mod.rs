@@ -1,12 +1,14 @@
 //! Estimators of the radiance along a camera ray.
 
 pub mod analog;
+mod pool;
 pub mod volpath;
+pub mod walk;
 
 use std::fmt::Debug;
 
 pub use analog::Analog;
-pub use volpath::{Counted, VolPath};
+pub use volpath::{Counted, Deep, VolPath};
 
 use crate::{
     math::Ray,
@@ -16,19 +18,28 @@ use crate::{
     tally::Tally,
 };
 
+/// What an estimate begins with.
+#[derive(Debug, Clone, Copy)]
+pub struct CameraSample {
+    /// From the camera into the scene.
+    pub ray: Ray,
+    /// What the lanes mean.
+    pub wavelengths: Wavelengths,
+    /// Chooses the lane that steers, in [0, 1).
+    pub u_hero: f32,
+    /// All further random numbers.
+    pub sampler: Sampler,
+}
+
 /// An unbiased (unless it says otherwise) estimator of radiance.
 pub trait Integrator: Debug + Sync {
-    /// One estimate of the radiance that arrives along a camera ray, in the lanes of `wavelengths`; `u_hero` chooses
-    /// the lane that steers.
-    fn li(
-        &self,
-        scene: &Scene,
-        ray: Ray,
-        wavelengths: Wavelengths,
-        u_hero: f32,
-        sampler: &mut Sampler,
-        tally: &mut Tally,
-    ) -> Lanes;
+    /// One estimate of the radiance that arrives along a camera ray, in the lanes of its wavelengths.
+    fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes;
+
+    /// Estimates for many camera rays, in their order: the same bits as [`Self::li`] gives for each.
+    fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
+        samples.iter().map(|seen| self.li(scene, seen, tally)).collect()
+    }
 }
 
 /// An estimate by one lane a path, chosen by `u`, that stands for all of them.

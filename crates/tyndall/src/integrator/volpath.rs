@@ -1,14 +1,12 @@
 //! The workhorse: unidirectional path tracing of surfaces and homogeneous media, with light sampling at every vertex
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
-use super::Integrator;
+use super::{CameraSample, Integrator, pool};
 use crate::{
     light::{Light, Reference},
     material::Material,
-    math::Ray,
     medium::{Inside, Skin, Within},
-    path::{Event, History, Path, Vertex, shadow},
-    sampling::Sampler,
+    path::{Attempt, Event, History, Path, Vertex, shadow},
     scene::Scene,
     shape::Interaction,
     spectrum::{Lanes, Wavelengths},
@@ -24,12 +22,26 @@ pub struct VolPath {
     pub counted: Counted,
     /// Paths below this throughput play roulette and survive with this throughput [1].
     pub roulette: f32,
+    /// How paths deep inside a medium are followed.
+    pub deep: Deep,
 }
 
 impl Default for VolPath {
     fn default() -> Self {
-        Self { max_depth: None, counted: Counted::Scatterings, roulette: 0.25 }
+        Self { max_depth: None, counted: Counted::Scatterings, roulette: 0.25, deep: Deep::default() }
     }
+}
+
+/// How paths deep inside a medium are followed: see [`super::walk`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Deep {
+    /// As everywhere: a ray for each flight, a light sample at each collision.
+    Traced,
+    /// Within balls without surfaces, one path after the other.
+    Alone,
+    /// The same, many paths at once: the same bits.
+    #[default]
+    Together,
 }
 
 /// What a limit on the depth of paths counts. (Boundaries without a material never count.)
@@ -65,19 +77,24 @@ impl Sink for Lanes {
 }
 
 impl Integrator for VolPath {
-    fn li(
-        &self,
-        scene: &Scene,
-        ray: Ray,
-        wavelengths: Wavelengths,
-        u_hero: f32,
-        sampler: &mut Sampler,
-        tally: &mut Tally,
-    ) -> Lanes {
+    fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
         let mut radiance = Lanes::ZERO;
-        let mut path = Path::new(scene, ray, wavelengths, u_hero, *sampler);
-        while path.step(scene, self, &mut radiance, tally) == Status::Alive {}
+        let mut path = Path::new(scene, seen);
+        while path.step(scene, self, &mut radiance, tally) == Status::Alive {
+            if let Some(mut walker) = path.dive(self) {
+                let phase = &scene.medium(walker.medium).phase;
+                let end = walker.alone(phase);
+                path.emerge(&walker, end, phase, tally);
+            }
+        }
         radiance
+    }
+
+    fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
+        if self.deep == Deep::Together && !scene.media.is_empty() {
+            return pool::estimate(scene, self, samples, tally);
+        }
+        samples.iter().map(|seen| self.li(scene, seen, tally)).collect()
     }
 }
 
@@ -130,13 +147,17 @@ impl Path {
                 self.find_emitter(scene, &hit, sink);
                 tally.surface_vertices += 1;
                 let vertex = Vertex::met(scene, hit, bsdf, self.ray.dir, relief);
-                self.scatter(scene, settings, &vertex, disperses, sink, tally)
+                self.scatter(scene, settings, &vertex, (disperses, Attempt::CERTAIN), sink, tally)
             }
             Event::Scatter { p, phase, emitted } => {
                 self.find_emission(emitted, sink);
+                let light = match settings.deep {
+                    Deep::Traced => Attempt::CERTAIN,
+                    Deep::Alone | Deep::Together => self.look_around(scene, p),
+                };
                 self.history.order += 1;
                 let vertex = Vertex::Medium { p, dir: self.ray.dir, phase };
-                self.scatter(scene, settings, &vertex, false, sink, tally)
+                self.scatter(scene, settings, &vertex, (false, light), sink, tally)
             }
             Event::Absorb { emitted, .. } => {
                 self.find_emission(emitted, sink);
@@ -207,6 +228,7 @@ impl Path {
 
     /// Enters the medium on the far side of a surface.
     fn enter(&mut self, scene: &Scene, hit: &Interaction) {
+        self.forget_surroundings();
         if scene.has_bodies() {
             self.within = self.beyond;
             self.inside = self.within.inside(scene, &self.wavelengths);
@@ -225,7 +247,7 @@ impl Path {
         scene: &Scene,
         settings: &VolPath,
         vertex: &Vertex,
-        disperses: bool,
+        (disperses, light): (bool, Attempt),
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) -> Status {
@@ -240,8 +262,8 @@ impl Path {
             self.part_wavelengths();
         }
         let reference = vertex.reference();
-        if vertex.can_use_light_samples() {
-            self.sample_light(scene, vertex, &reference, sink, tally);
+        if light.made && vertex.can_use_light_samples() {
+            self.sample_light(scene, vertex, &reference, &light, sink, tally);
         }
         if !self.weights.throughput().is_finite() {
             sink.add(self.weights.beta, &self.history); // the film counts and locates it
@@ -263,7 +285,7 @@ impl Path {
         if scattered.specular {
             self.weights.scatter_specular(scattered.weight);
         } else {
-            self.weights.scatter(scattered.weight, scattered.pdf);
+            self.weights.scatter(scattered.weight, scattered.pdf, light.supposed);
         }
         self.history.eta_scale *= scattered.eta * scattered.eta;
         self.history.scattered(scattered.specular);
@@ -298,6 +320,7 @@ impl Path {
         scene: &Scene,
         vertex: &Vertex,
         reference: &Reference,
+        attempt: &Attempt,
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
@@ -322,8 +345,9 @@ impl Path {
             shadow::transmittance(scene, origin, sample.dir, &sample.target, (inside, within), wavelengths, tally);
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
-            let weight = self.weights.light_sample(probability * sample.pdf, scatter_pdf, transmittance);
-            sink.add(weight * f * sample.li, &self.history);
+            let Attempt { odds, supposed, .. } = *attempt;
+            let weight = self.weights.light_sample(supposed * probability * sample.pdf, scatter_pdf, transmittance);
+            sink.add(weight * (supposed / odds) * f * sample.li, &self.history);
         }
     }
 

@@ -33,11 +33,10 @@ mod volume_v1;
 pub use primitives::{MAX_DEPTH, SURVIVAL_PROBABILITY};
 
 use crate::{
-    integrator::{Integrator, in_one_lane},
-    math::{Ray, Vec3},
-    sampling::Sampler,
+    integrator::{CameraSample, Integrator, in_one_lane},
+    math::Vec3,
     scene::Scene,
-    spectrum::{Lanes, Wavelengths},
+    spectrum::Lanes,
     tally::Tally,
 };
 use primitives::{Point, Radiance, World};
@@ -121,17 +120,10 @@ impl Lecture {
 }
 
 impl Integrator for Lecture {
-    fn li(
-        &self,
-        scene: &Scene,
-        ray: Ray,
-        wavelengths: Wavelengths,
-        u_hero: f32,
-        sampler: &mut Sampler,
-        tally: &mut Tally,
-    ) -> Lanes {
+    fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
+        let CameraSample { ray, wavelengths, u_hero, mut sampler } = *seen;
         in_one_lane(scene.color, u_hero, |lane| {
-            let mut world = World::new(scene, wavelengths, lane, self.sees_media(), sampler, tally);
+            let mut world = World::new(scene, wavelengths, lane, self.sees_media(), &mut sampler, tally);
             let eye = world.eye(ray.origin);
             let estimate = self.ray_radiance_est()(&mut world, &eye, ray.dir);
             world.settle(estimate)

@@ -46,6 +46,11 @@ impl Bounds {
         (p.cmpge(self.min) & p.cmple(self.max)).all()
     }
 
+    /// A lower bound on the distance from `p` to the box; 0 inside [length].
+    pub fn distance(&self, p: Vec3) -> f32 {
+        (self.min - p).max(p - self.max).max(Vec3::ZERO).length() * (1.0 - 4.0 * f32::EPSILON)
+    }
+
     /// Edge lengths [length].
     pub fn extent(&self) -> Vec3 {
         self.max - self.min

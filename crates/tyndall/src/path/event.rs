@@ -40,7 +40,14 @@ impl Path {
     /// Samples a free flight, looks for a surface before its end, and weighs the path for what it found.
     #[inline]
     pub fn next_event<'s>(&mut self, scene: &'s Scene, tally: &mut Tally) -> Event<'s> {
-        let flight = self.sample_flight();
+        if let Some(collision) = self.unfinished_collision(scene) {
+            return collision;
+        }
+        let flight = match self.unfinished_flight() {
+            Some(flight) if self.is_free(scene, flight) => return self.collide(scene, flight, tally),
+            Some(flight) => flight,
+            None => self.sample_flight(),
+        };
         tally.rays += 1;
         match scene.first_surface(&self.ray, flight) {
             Some(hit) => {

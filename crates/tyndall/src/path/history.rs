@@ -53,6 +53,16 @@ impl History {
         self.flights = self.flights.saturating_add(1);
     }
 
+    /// Notes collisions that a walk has gone through.
+    #[inline]
+    pub fn walked(&mut self, collisions: u32) {
+        self.vertices = self.vertices.saturating_add(collisions);
+        self.order = self.order.saturating_add(collisions);
+        if collisions > 0 {
+            (self.flights, self.specular_run) = (0, 0);
+        }
+    }
+
     /// Notes a scattering by a Dirac lobe, or by another.
     #[inline]
     pub fn scattered(&mut self, specular: bool) {

@@ -1,17 +1,20 @@
 //! A path as a value: where it is, what it weighs, what it has been through.
 
+pub mod deep;
 pub mod event;
 pub mod history;
 pub mod shadow;
 pub mod vertex;
 pub mod weights;
 
+pub use deep::{Attempt, Surroundings};
 pub use event::Event;
 pub use history::History;
 pub use vertex::Vertex;
 pub use weights::PathWeights;
 
 use crate::{
+    integrator::CameraSample,
     light::Reference,
     math::Ray,
     medium::{Inside, Within},
@@ -31,6 +34,8 @@ pub struct Path {
     pub within: Within,
     /// Those that it is in once it has passed the surface that it is at.
     pub beyond: Within,
+    /// What it knows of its surroundings in a medium.
+    pub around: Surroundings,
     /// What it would carry.
     pub weights: PathWeights,
     /// What its lanes mean.
@@ -47,12 +52,14 @@ pub struct Path {
 
 impl Path {
     /// A path that leaves the camera.
-    pub fn new(scene: &Scene, ray: Ray, wavelengths: Wavelengths, u_hero: f32, sampler: Sampler) -> Self {
+    pub fn new(scene: &Scene, seen: &CameraSample) -> Self {
+        let CameraSample { ray, wavelengths, u_hero, sampler } = *seen;
         Self {
             ray,
             inside: scene.around_camera().inside(scene, &wavelengths),
             within: *scene.around_camera(),
             beyond: *scene.around_camera(),
+            around: Surroundings::default(),
             weights: PathWeights::default(),
             wavelengths,
             hero: ((u_hero * 4.0) as usize).min(3),

@@ -79,11 +79,20 @@ impl PathWeights {
         self.beta * transmittance / (self.r_u * sigma_t * transmittance).mean()
     }
 
-    /// The path took a direction drawn with density `pdf`, with weight `f·cos / pdf` in each lane.
+    /// The path went through collisions inside a medium; what each lane would have weighed, and its density.
     #[inline]
-    pub fn scatter(&mut self, weight: Lanes, pdf: f32) {
+    pub fn walk(&mut self, beta: Lanes, density: Lanes) {
+        self.beta *= beta;
+        self.r_u *= density;
+        self.r_l = None;
+    }
+
+    /// The path took a direction drawn with density `pdf`, with weight `f·cos / pdf` in each lane, from a place where
+    /// light was sampled with probability `odds`.
+    #[inline]
+    pub fn scatter(&mut self, weight: Lanes, pdf: f32, odds: f32) {
         self.beta *= weight;
-        self.r_l = Some(self.r_u / pdf);
+        self.r_l = (odds > 0.0).then(|| self.r_u * (odds / pdf));
     }
 
     /// The path took the one direction of a Dirac lobe: no light sample could have.

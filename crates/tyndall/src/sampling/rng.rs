@@ -1,8 +1,10 @@
 //! The stream of random numbers that a path owns: counter-based, so that it has no state to share and any number of it
 //! can be computed alone, in any lane.
 //!
-//! Output `i` is two rounds of Wellons' *lowbias32* hash (bias 0.17, 2018) of the counter, each keyed with half of a
-//! 64-bit key made from pixel, sample and seed. Only 32-bit products, so 16 lanes run at once.
+//! Numbers come in blocks of four, as many as a collision wants. Block `b` is a round of Wellons' *lowbias32* hash (bias
+//! 0.17, 2018) of `b`, keyed with half of a 64-bit key made from pixel, sample and seed; number `j` of the block is a second
+//! round of that plus the other half of the key and `j` steps of a Weyl sequence. Only 32-bit products, so 16 lanes run at
+//! once.
 
 /// A stream of 2³² uniform numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +34,27 @@ pub const fn mix64(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// 2³² divided by the golden ratio.
+const WEYL: u32 = 0x9e37_79b9;
+
+/// Number `j` of a block.
+#[inline]
+const fn number(block: u32, j: u32) -> u32 {
+    mix(block.wrapping_add(j.wrapping_mul(WEYL)))
+}
+
+/// Random bits as a number in `[0, 1)`, 24 bits of it.
+#[inline]
+pub fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// Random bits as a number in `(0, 1]`.
+#[inline]
+pub fn positive(bits: u32) -> f32 {
+    (bits as f32 + 0.5) * (1.0 / 4_294_967_296.0)
+}
+
 impl Rng {
     /// The stream of one sample of one pixel: the same on any thread, in any order.
     #[inline]
@@ -44,21 +67,36 @@ impl Rng {
     /// The next 32 random bits.
     #[inline]
     pub fn next_u32(&mut self) -> u32 {
-        let i = self.counter;
-        self.counter = i.wrapping_add(1);
-        mix(mix(i.wrapping_mul(0x9e37_79b9) ^ self.key[0]).wrapping_add(self.key[1]))
+        let bits = number(self.block(), self.counter % 4);
+        self.counter = self.counter.wrapping_add(1);
+        bits
+    }
+
+    /// Four times 32 random bits, from the next whole block.
+    #[inline]
+    pub fn next_four(&mut self) -> [u32; 4] {
+        self.counter = self.counter.wrapping_add(3) & !3;
+        let block = self.block();
+        self.counter = self.counter.wrapping_add(4);
+        [number(block, 0), number(block, 1), number(block, 2), number(block, 3)]
+    }
+
+    /// What the numbers of the block have in common that is under way.
+    #[inline]
+    fn block(self) -> u32 {
+        mix((self.counter / 4).wrapping_mul(WEYL) ^ self.key[0]).wrapping_add(self.key[1])
     }
 
     /// Uniform in `[0, 1)`, 24 bits.
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
+        unit(self.next_u32())
     }
 
     /// Uniform in `(0, 1]`, 32 bits: the argument of a logarithm.
     #[inline]
     pub fn next_positive(&mut self) -> f32 {
-        (self.next_u32() as f32 + 0.5) * (1.0 / 4_294_967_296.0)
+        positive(self.next_u32())
     }
 }
 
@@ -71,7 +109,7 @@ mod tests {
     fn the_first_values_of_a_stream_are_pinned() {
         let mut rng = Rng::for_sample((3, 5), 7, 11);
         let first: [u32; 4] = std::array::from_fn(|_| rng.next_u32());
-        assert_eq!(first, [1492736005, 989194439, 2646343384, 319493531]);
+        assert_eq!(first, [1492736005, 1905860172, 3991765664, 567232534]);
     }
 
     /// Pearson's statistic of serial pairs over 32×32 cells: χ² with 1023 degrees of freedom has mean 1023 and

@@ -19,9 +19,6 @@ pub enum SamplerKind {
     Sobol,
 }
 
-/// How many vertices of a path have low-discrepancy blocks of their own.
-const STRATIFIED_VERTICES: u32 = 3;
-
 /// The numbers of one sample of one pixel.
 #[derive(Debug, Clone, Copy)]
 pub struct Sampler {
@@ -31,6 +28,9 @@ pub struct Sampler {
 }
 
 impl Sampler {
+    /// How many vertices of a path have low-discrepancy blocks of their own.
+    pub const STRATIFIED_VERTICES: u32 = 3;
+
     /// The numbers of sample `index` of `pixel`.
     #[inline]
     pub fn new(kind: SamplerKind, pixel: (u32, u32), index: u32, seed: u64) -> Self {
@@ -50,17 +50,23 @@ impl Sampler {
     fn block<const N: usize>(&mut self, domain: i32) -> [f32; N] {
         match &self.points {
             Some(points) => points.new_domain(domain).draw_sample_f32::<N>(),
-            None => std::array::from_fn(|_| self.rng.next_1d()),
+            None => self.random(),
         }
     }
 
     #[inline]
     fn vertex_block<const N: usize>(&mut self, vertex: u32, purpose: i32) -> [f32; N] {
-        if vertex < STRATIFIED_VERTICES {
-            self.block(2 + 4 * vertex as i32 + purpose)
-        } else {
-            std::array::from_fn(|_| self.rng.next_1d())
+        if vertex < Self::STRATIFIED_VERTICES { self.block(2 + 4 * vertex as i32 + purpose) } else { self.random() }
+    }
+
+    /// Written as a loop: closures over arrays are not always inlined.
+    #[inline]
+    fn random<const N: usize>(&mut self) -> [f32; N] {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.rng.next_1d();
         }
+        numbers
     }
 
     /// Place in the pixel (two) and on the lens (two).
@@ -78,7 +84,7 @@ impl Sampler {
     /// Free flight before vertex `vertex`, in `(0, 1]`.
     #[inline]
     pub fn flight(&mut self, vertex: u32) -> f32 {
-        if vertex < STRATIFIED_VERTICES && self.points.is_some() {
+        if vertex < Self::STRATIFIED_VERTICES && self.points.is_some() {
             let [u] = self.vertex_block(vertex, 0);
             1.0 - u
         } else {

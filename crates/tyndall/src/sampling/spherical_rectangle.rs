@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use glam::DVec3;
+use glam::DVec2;
 
 use crate::math::{Vec2, Vec3};
 
@@ -45,16 +45,15 @@ impl SphericalRectangle {
         Self::in_frame([x0, x0 + width], [y0, y0 + height], z)
     }
 
+    /// The angle between the planes through two neighbouring edges, which meet in the corner `(x, y, z)`, is the argument of
+    /// `xy + i |z| |corner|` (its sign turned at two of the four corners). By arguments and not by arc cosines: at grazing
+    /// incidence all planes nearly coincide, where those have no digits. Two angles at a time are the argument of a product.
     fn in_frame(x: [f64; 2], y: [f64; 2], z: f64) -> Option<Self> {
-        // Normals of the planes through the point and the edges.
-        let lower = DVec3::new(0.0, z, -y[0]).normalize();
-        let right = DVec3::new(-z, 0.0, x[1]).normalize();
-        let upper = DVec3::new(0.0, -z, y[1]).normalize();
-        let left = DVec3::new(z, 0.0, -x[0]).normalize();
-        // By the arc tangent: at grazing incidence all four planes nearly coincide, where the arc cosine has no digits.
-        let angle = |a: DVec3, b: DVec3| a.cross(b).length().atan2(-a.dot(b));
-        let k = TAU - angle(upper, left) - angle(left, lower);
-        let omega = angle(lower, right) + angle(right, upper) - k;
+        let corner = |x: f64, y: f64, sign: f64| DVec2::new(sign * x * y, z.abs() * (x * x + y * y + z * z).sqrt());
+        let left = corner(x[0], y[0], -1.0).rotate(corner(x[0], y[1], 1.0));
+        let right = corner(x[1], y[0], 1.0).rotate(corner(x[1], y[1], -1.0));
+        let k = TAU - turn(left);
+        let omega = turn(right) - k;
         (omega >= MIN_SOLID_ANGLE && omega.is_finite() && z < 0.0).then_some(Self {
             solid_angle: omega as f32,
             omega,
@@ -70,7 +69,7 @@ impl SphericalRectangle {
         let Self { x, y, z, .. } = *self;
         let xu = self.cut(f64::from(u.x));
         let d2 = xu * xu + z * z;
-        let h = y.map(|y| y / (d2 + y * y).sqrt());
+        let h = [y[0] / (d2 + y[0] * y[0]).sqrt(), y[1] / (d2 + y[1] * y[1]).sqrt()];
         let hv = h[0] + f64::from(u.y) * (h[1] - h[0]);
         let yv = (hv * (d2 / (1.0 - hv * hv)).sqrt()).clamp(y[0], y[1]);
         Vec2::new(((xu - x[0]) / (x[1] - x[0])) as f32, ((yv - y[0]) / (y[1] - y[0])) as f32)
@@ -86,18 +85,19 @@ impl SphericalRectangle {
         // Mirrored if need be, so that the first of the two is the farther: b₀² − 1 is then the smaller term.
         let y = if self.y[0].abs() < self.y[1].abs() { [-self.y[1], -self.y[0]] } else { self.y };
         let phi = u * self.omega + self.k;
-        let length = y.map(|y| y.hypot(z));
+        let length = [(y[0] * y[0] + z * z).sqrt(), (y[1] * y[1] + z * z).sqrt()];
         let (b0, b1) = (-y[0] / length[0], y[1] / length[1]);
-        let below_one: [f64; 2] = std::array::from_fn(|i| z * z / (length[i] * (length[i] + y[i].abs())));
+        let below = |i: usize| z * z / (length[i] * (length[i] + y[i].abs()));
+        let below_one = [below(0), below(1)];
         let (half_sin, half_cos) = (0.5 * phi).sin_cos();
-        let cos = phi.cos();
+        let (sin, cos) = (2.0 * half_sin * half_cos, half_cos * half_cos - half_sin * half_sin);
         let cos_below_one = 2.0 * if cos > 0.0 { half_sin * half_sin } else { half_cos * half_cos };
         let difference = if cos * b0 * b1 > 0.0 {
             (below_one[1] - below_one[0] - cos_below_one * (1.0 - below_one[0])) * b1.signum()
         } else {
             cos * b0 - b1
         };
-        let f = difference / phi.sin();
+        let f = difference / sin;
         let x_over_z = (f * f - (z / length[0]).powi(2)).max(0.0).sqrt().recip();
         (x_over_z * z.abs().copysign(f)).clamp(x[0], x[1])
     }
@@ -106,6 +106,12 @@ impl SphericalRectangle {
     pub fn pdf(&self) -> f32 {
         (1.0 / self.omega) as f32
     }
+}
+
+/// The argument of a complex number, in [0, 2π).
+fn turn(z: DVec2) -> f64 {
+    let angle = z.y.atan2(z.x);
+    if angle < 0.0 { angle + TAU } else { angle }
 }
 
 #[cfg(test)]

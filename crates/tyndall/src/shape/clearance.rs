@@ -6,7 +6,7 @@
 //! stand inside the hull of their corners; and for parts of spheres, disks and cylinders, which count as the whole.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, dispatch, f32x8};
+use fearless_simd::{Simd, dispatch, f32x8, mask32x8};
 use glam::DVec3;
 
 use super::{
@@ -209,16 +209,22 @@ fn beside<S: Simd>(simd: S, least: f32x8<S>, greatest: f32x8<S>, p: f32) -> f32x
     ((least - at).max(at - greatest) - slack).max(f32x8::splat(simd, 0.0))
 }
 
-/// The least distance to the triangles of a packet, at least where it may be below the root of `limit`: the boxes of
-/// the triangles are asked first.
+/// A lower bound on the distance to the triangles of a packet, at least where it may be below the root of `limit`: the
+/// boxes of the triangles are asked first.
 #[inline(always)]
 fn to_packet<S: Simd>(simd: S, packet: &Packet, p: DVec3, limit: f32) -> f64 {
     let point = p.as_vec3();
     let x = beside_triangles(simd, packet, 0, point.x);
     let y = beside_triangles(simd, packet, 1, point.y);
     let z = beside_triangles(simd, packet, 2, point.z);
-    let mut mask = sum_of_squares(simd, x, y, z).simd_lt(f32x8::splat(simd, limit)).to_bitmask() as u32;
-    let mut nearest = f64::INFINITY;
+    let near = sum_of_squares(simd, x, y, z).simd_lt(f32x8::splat(simd, limit));
+    if near.to_bitmask() == 0 {
+        return f64::INFINITY;
+    }
+    let (distances, certain) = to_triangles(simd, packet, point);
+    let infinity = f32x8::splat(simd, f32::INFINITY);
+    let mut nearest = f64::from((near & certain).select(distances, infinity).reduce_min());
+    let mut mask = (near & !certain).to_bitmask() as u32;
     while mask != 0 {
         let [a, b, c] = packet.triangle((mask.trailing_zeros() & 7) as usize);
         mask &= mask - 1;
@@ -235,6 +241,72 @@ fn beside_triangles<S: Simd>(simd: S, packet: &Packet, axis: usize, p: f32) -> f
     let b = f32x8::simd_from(simd, packet.vertex[1][axis]);
     let c = f32x8::simd_from(simd, packet.vertex[2][axis]);
     beside(simd, a.min(b).min(c), a.max(b).max(c), p)
+}
+
+/// `1/sin` of the angle between two edges above which double precision is asked.
+const FLATTEST: f32 = 8.0;
+
+/// Eight vectors.
+type Vectors<S> = [f32x8<S>; 3];
+
+/// Lower bounds on the distances to the triangles of a packet, and for which of them single precision is enough: not for
+/// slivers, whose normal has few digits.
+#[inline(always)]
+fn to_triangles<S: Simd>(simd: S, packet: &Packet, p: Vec3) -> (f32x8<S>, mask32x8<S>) {
+    let zero = f32x8::splat(simd, 0.0);
+    let [a, b, c] = [from(simd, packet, 0, p), from(simd, packet, 1, p), from(simd, packet, 2, p)];
+    let [ab, bc, ca] = [minus(b, a), minus(c, b), minus(a, c)];
+    let edges = to_edge(simd, a, ab).min(to_edge(simd, b, bc)).min(to_edge(simd, c, ca));
+
+    let n = cross(ca, ab);
+    let square = dot(n, n);
+    let length = square.sqrt();
+    let [over_ab, over_bc, over_ca] = [dot(cross(n, ab), a), dot(cross(n, bc), b), dot(cross(n, ca), c)];
+    let inside = over_ab.max(over_bc).max(over_ca).simd_le(zero) & square.simd_gt(zero);
+    let height = dot(n, a).abs() / length;
+    let distance = inside.select(height.min(edges.sqrt()), edges.sqrt());
+
+    // The errors of the differences of vertices, times what they are divided by.
+    let spread = (dot(ab, ab) * dot(ca, ca)).sqrt() / length;
+    let reach = dot(a, a).sqrt() + (dot(ab, ab) + dot(ca, ca)).sqrt() + f32x8::splat(simd, p.abs().max_element());
+    let slack = reach * (spread + f32x8::splat(simd, 1.0)) * f32x8::splat(simd, 4.0 * f32::EPSILON);
+    (distance - slack, spread.simd_lt(f32x8::splat(simd, FLATTEST)))
+}
+
+/// From a point to a vertex of each triangle.
+#[inline(always)]
+fn from<S: Simd>(simd: S, packet: &Packet, vertex: usize, p: Vec3) -> Vectors<S> {
+    let [x, y, z] = &packet.vertex[vertex];
+    [
+        f32x8::simd_from(simd, *x) - f32x8::splat(simd, p.x),
+        f32x8::simd_from(simd, *y) - f32x8::splat(simd, p.y),
+        f32x8::simd_from(simd, *z) - f32x8::splat(simd, p.z),
+    ]
+}
+
+/// Squared distance to the edges that begin at `from`.
+#[inline(always)]
+fn to_edge<S: Simd>(simd: S, from: Vectors<S>, edge: Vectors<S>) -> f32x8<S> {
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    let square = dot(edge, edge).max(f32x8::splat(simd, f32::MIN_POSITIVE));
+    let t = ((zero - dot(from, edge)) / square).max(zero).min(one);
+    let nearest = [from[0] + edge[0] * t, from[1] + edge[1] * t, from[2] + edge[2] * t];
+    dot(nearest, nearest)
+}
+
+#[inline(always)]
+fn minus<S: Simd>(a: Vectors<S>, b: Vectors<S>) -> Vectors<S> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: Vectors<S>, b: Vectors<S>) -> f32x8<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<S: Simd>(a: Vectors<S>, b: Vectors<S>) -> Vectors<S> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Squared distance to a triangle (after Ericson 2005, § 5.1.5), exact enough in double precision for triangles as

@@ -9,6 +9,8 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub};
 
 use glam::Vec4;
 
+use crate::math::fast;
+
 /// Four lanes of a spectral quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Lanes(pub Vec4);
@@ -71,7 +73,8 @@ impl Lanes {
     #[inline]
     #[must_use]
     pub fn exp(self) -> Self {
-        Self(self.0.exp())
+        let [a, b, c, d] = self.to_array();
+        Self::new([fast::exp(a), fast::exp(b), fast::exp(c), fast::exp(d)])
     }
 
     /// Whether every lane is exactly zero.

@@ -11,7 +11,8 @@ use super::{
     of_mesh, of_sphere,
 };
 
-/// Within single precision of parry3d's closest point, capped or not.
+/// Within single precision of parry3d's closest point, capped or not. The slack is 4ε for each unit of reach, here 5 at
+/// most (two edges of up to 1 and points within 1.5), times 1 + 8 for the flattest triangles of single precision: 2.2e-5.
 #[test]
 fn the_clearance_of_triangles_is_the_distance_that_parry_finds() {
     let random = &mut Random(30);
@@ -24,9 +25,10 @@ fn the_clearance_of_triangles_is_the_distance_that_parry_finds() {
             let p = random.in_ball() * 1.5;
             let distance = theirs.distance_to_local_point(parry3d::math::Vector::new(p.x, p.y, p.z), false);
             let clearance = ours.clearance(p, f32::INFINITY);
-            assert!((clearance - distance).abs() < 3e-6, "{p}: {clearance} {distance}");
+            assert!(clearance < distance + 1e-6 && clearance > distance - 2.2e-5, "{p}: {clearance} {distance}");
             let cap = random.unit() * 0.2;
-            assert_eq!(ours.clearance(p, cap), clearance.min(cap));
+            let capped = ours.clearance(p, cap);
+            assert!(capped <= cap && (capped - clearance.min(cap)).abs() < 2.2e-5, "{p}: {capped} {clearance} {cap}");
         }
     }
 }

@@ -1,0 +1,217 @@
+//! Walks deep inside a medium: many collisions without a ray.
+//!
+//! A path knows a *ball* around it that no surface cuts and that holds no light ([`Ball`], from
+//! [`Scene::clearance`](crate::scene::Scene::clearance)). While its flights end inside, nothing can be in their way, and
+//! a collision costs a logarithm, a rotation and four random numbers.
+//!
+//! **Light.** From a point with clearance `c` no lane has more than `exp(−σ_t c)` of transmittance to any light. There
+//! light is sampled with probability
+//!
+//! ```text
+//! q = min(1, k exp(−min σ_t · c)),   k = 3
+//! ```
+//!
+//! and counts as a technique of density `q p_light`: what it finds is divided by `q p_light + p_phase T`, what the path
+//! runs into by the same (the balance heuristic). `q` depends on what the path has been through and on nothing that is
+//! drawn later, so both together stay unbiased whatever `k` is.
+//!
+//! **Weights.** In a homogeneous medium the weight of `n` collisions after flights of total length `L` is
+//! `σ_s^n exp(−σ_t L)` in each lane, so a walk carries `n` and `L`, and the lanes are settled where it ends
+//! ([`Settled`]): spectral MIS over the lanes costs nothing within.
+//!
+//! A walk ends ([`End`]) where a flight would leave the ball (it is then traced like any other), where light is to be
+//! sampled, or where roulette is due. [`Walker::alone`] follows one walk; [`together`] follows many with SIMD and, since
+//! every path owns its random numbers and no operation is fused, gives the same bits.
+
+mod step;
+pub(crate) mod together;
+
+pub(crate) use step::light_odds;
+
+use crate::{
+    math::{Vec3, rounding::gamma},
+    medium::{Coefficients, MediumId},
+    phase::Phase,
+    sampling::Rng,
+    scene::Scene,
+    spectrum::Lanes,
+};
+
+/// Greatest clearance that is asked for [mean free paths].
+const FARTHEST: f32 = 64.0;
+/// Least room for a walk to begin [mean free paths].
+const ROOM: f32 = 0.5;
+/// Most collisions between two games of roulette.
+const MOST_COLLISIONS: f32 = 256.0;
+/// What a throughput may fall to between two games of roulette \[1\].
+const LEAST_THROUGHPUT: f32 = 0.25;
+
+/// A ball that no surface cuts and that holds no light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    /// Its centre [length].
+    pub centre: Vec3,
+    /// Its radius, 0 for none [length].
+    pub radius: f32,
+}
+
+impl Ball {
+    /// None.
+    pub const NONE: Self = Self { centre: Vec3::ZERO, radius: 0.0 };
+
+    /// Around a point of the scene, no larger than `cap` [length]. It is smaller than the clearance by what rounding can do
+    /// to a point within it.
+    #[inline]
+    pub fn around(scene: &Scene, p: Vec3, cap: f32) -> Self {
+        let clearance = scene.clearance(p, cap);
+        let margin = gamma(16) * (p.abs().max_element() + clearance);
+        Self { centre: p, radius: (clearance - margin).max(0.0) }
+    }
+
+    /// How far it is from `p` to its surface at least, not above 0 outside [length].
+    #[inline]
+    pub fn room(&self, p: Vec3) -> f32 {
+        self.radius - (p - self.centre).length()
+    }
+}
+
+/// What a walk needs to know of a medium, at the wavelengths and with the hero of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Depths {
+    /// Which medium.
+    pub id: MediumId,
+    /// Of the hero [1/length].
+    pub sigma_t: f32,
+    /// The least of all lanes [1/length].
+    pub sigma_min: f32,
+    /// Whether light can be reached.
+    pub lit: bool,
+    /// Collisions between two games of roulette.
+    pub limit: u32,
+    /// `ln(σ_t / σ_t,hero)` in each lane.
+    log_extinction: Lanes,
+    /// `ln(σ_s / σ_t)` in each lane.
+    log_albedo: Lanes,
+    /// `σ_t − σ_t,hero` in each lane [1/length].
+    beyond_hero: Lanes,
+}
+
+/// What a walk does to the weights of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settled {
+    /// `f / p_hero`.
+    pub beta: Lanes,
+    /// `p_lane / p_hero`.
+    pub density: Lanes,
+}
+
+/// Stands for the logarithm of 0: `exp` of it is 0, and no product with a count is NaN.
+const LOG_OF_NOTHING: f32 = -1e4;
+
+impl Depths {
+    /// Of a medium, unless walks in it are worth nothing: it glows (each collision counts), nothing scatters the hero, or
+    /// no clearance in it reaches far.
+    pub fn of(scene: &Scene, id: MediumId, coefficients: &Coefficients, hero: usize) -> Option<Self> {
+        let Coefficients { sigma_t, sigma_s, source } = *coefficients;
+        let extinction = sigma_t.lane(hero);
+        let scatters = sigma_s.lane(hero) > 0.0 && sigma_t.min_lane() > 0.0;
+        if !scatters || !source.is_zero() || scene.deepest(id) * extinction < 2.0 * ROOM {
+            return None;
+        }
+        let log = |v: f32| if v > 0.0 { v.ln() } else { LOG_OF_NOTHING };
+        let albedo = sigma_s / sigma_t;
+        let limit = LEAST_THROUGHPUT.ln() / log(albedo.max_lane()).min(-f32::MIN_POSITIVE);
+        Some(Self {
+            id,
+            sigma_t: extinction,
+            sigma_min: sigma_t.min_lane(),
+            lit: scene.light_can_reach(Some(id)),
+            limit: if limit < MOST_COLLISIONS { (limit as u32).max(1) } else { MOST_COLLISIONS as u32 },
+            log_extinction: (sigma_t / extinction).map(log),
+            log_albedo: albedo.map(log),
+            beyond_hero: sigma_t - Lanes::splat(extinction),
+        })
+    }
+
+    /// The greatest clearance worth asking for [length].
+    #[inline]
+    pub fn farthest(&self) -> f32 {
+        FARTHEST / self.sigma_t
+    }
+
+    /// Whether a walk is worth to begin with so much room [length].
+    #[inline]
+    pub fn is_roomy(&self, room: f32) -> bool {
+        room * self.sigma_t >= ROOM
+    }
+
+    /// The probability of a light sample at a point with this room [length].
+    #[inline]
+    pub fn odds(&self, room: f32) -> f32 {
+        if self.lit { light_odds(self.sigma_min * room) } else { 0.0 }
+    }
+
+    /// The weights of `collisions` after flights of total `length` [length].
+    #[inline]
+    pub fn settle(&self, collisions: u32, length: f32) -> Settled {
+        let n = collisions as f32;
+        let density = (self.log_extinction * n - self.beyond_hero * length).exp();
+        Settled { beta: density * (self.log_albedo * n).exp(), density }
+    }
+}
+
+/// A walk: what of a path changes while it is deep, and what it must know of where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walker {
+    /// The medium.
+    pub medium: MediumId,
+    /// The last collision, or where the walk began [length].
+    pub p: Vec3,
+    /// Direction of travel from there.
+    pub dir: Vec3,
+    /// Random numbers.
+    pub rng: Rng,
+    /// The ball that holds `p`.
+    pub ball: Ball,
+    /// `1/σ_t` of the hero [length].
+    pub mean_free_path: f32,
+    /// The least `σ_t` of all lanes [1/length].
+    pub sigma_min: f32,
+    /// Whether light can be reached.
+    pub lit: bool,
+    /// Collisions so far.
+    pub collisions: u32,
+    /// After so many it ends.
+    pub limit: u32,
+    /// Sum of all flights that ended in a collision [length].
+    pub length: f32,
+    /// The flight under way [length].
+    pub flight: f32,
+    /// Cosine of the last deflection.
+    pub cos_theta: f32,
+}
+
+/// Why a walk ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The flight under way may leave the ball.
+    Leaves,
+    /// Light is sampled at the collision.
+    Light,
+    /// So many collisions want a game of roulette.
+    Roulette,
+}
+
+impl Walker {
+    /// Follows a walk to its end.
+    pub fn alone(&mut self, phase: &Phase) -> End {
+        loop {
+            let cosine = |u| phase.sample(u);
+            let code =
+                if self.lit { step::collide::<true>(self, cosine) } else { step::collide::<false>(self, cosine) };
+            if let Some(end) = step::end(code) {
+                return end;
+            }
+        }
+    }
+}

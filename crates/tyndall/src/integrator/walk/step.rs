@@ -1,0 +1,76 @@
+//! One collision of a walk, written so that a compiler can do it for many lanes at once: no branch, no library call.
+
+use super::{End, Walker};
+use crate::{
+    math::{Vec3, fast},
+    phase::deflect,
+    sampling::rng::{positive, unit},
+};
+
+/// `k` of [`super`]: light samples are certain where the transmittance may be above 1/3.
+pub(super) const ODDS: f32 = 1.0;
+
+/// The probability of a light sample where the transmittance to any light is at most `exp(−tau)`.
+#[inline(always)]
+pub(crate) fn light_odds(tau: f32) -> f32 {
+    (ODDS * fast::exp(-tau)).min(1.0)
+}
+
+pub(super) const GOES_ON: u32 = 0;
+const LEAVES: u32 = 1;
+const LIGHT: u32 = 2;
+const ROULETTE: u32 = 3;
+
+/// What [`collide`] has said.
+#[inline(always)]
+pub(super) fn end(code: u32) -> Option<End> {
+    match code {
+        LEAVES => Some(End::Leaves),
+        LIGHT => Some(End::Light),
+        ROULETTE => Some(End::Roulette),
+        _ => None,
+    }
+}
+
+/// Flies and collides, and turns if the walk goes on.
+///
+/// Where the flight leaves the ball, nothing but [`Walker::flight`] and the random numbers change; where the walk ends at
+/// a collision, the direction is still that of the flight that led there. `LIT` says whether light can be reached.
+#[inline(always)]
+pub(super) fn collide<const LIT: bool>(w: &mut Walker, cosine: impl Fn(f32) -> f32) -> u32 {
+    let [u_flight, u_light, u_cosine, u_azimuth] = w.rng.next_four();
+    w.flight = -fast::ln(positive(u_flight)) * w.mean_free_path;
+    let p = w.p + w.dir * w.flight;
+    let room = w.ball.radius - length(p - w.ball.centre);
+    let stays = room > 0.0;
+    let is_lit = LIT && positive(u_light) <= light_odds(w.sigma_min * room.max(0.0));
+    let is_due = w.collisions + 1 >= w.limit;
+    let cos_theta = cosine(unit(u_cosine));
+    let dir = deflect(w.dir, cos_theta, unit(u_azimuth));
+
+    let goes_on = stays && !is_lit && !is_due;
+    w.p = select(stays, p, w.p);
+    w.length += if stays { w.flight } else { 0.0 };
+    w.collisions += u32::from(stays);
+    w.dir = select(goes_on, dir, w.dir);
+    w.cos_theta = if goes_on { cos_theta } else { w.cos_theta };
+    if goes_on {
+        GOES_ON
+    } else if !stays {
+        LEAVES
+    } else if is_lit {
+        LIGHT
+    } else {
+        ROULETTE
+    }
+}
+
+#[inline(always)]
+fn select(first: bool, a: Vec3, b: Vec3) -> Vec3 {
+    Vec3::new(if first { a.x } else { b.x }, if first { a.y } else { b.y }, if first { a.z } else { b.z })
+}
+
+#[inline(always)]
+fn length(v: Vec3) -> f32 {
+    (v.x * v.x + v.y * v.y + v.z * v.z).sqrt()
+}

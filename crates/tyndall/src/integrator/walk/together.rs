@@ -1,0 +1,237 @@
+//! Many walks in one medium at once, a lane each. A lane that has ended is filled again at once: walks differ in length,
+//! and lanes that wait for the longest do nothing most of the time.
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::{Ball, End, Walker, step};
+use crate::{math::Vec3, medium::MediumId, phase::Phase, sampling::Rng};
+
+/// Lanes: what the widest instruction set does at once.
+pub(crate) const WIDTH: usize = 16;
+
+/// Runs the walks of a school for one model of phase functions.
+macro_rules! swim {
+    ($school:expr, $level:expr, $model:expr, $least:expr, $ended:expr) => {
+        if $school.lit {
+            dispatch!($level, simd => $school.run::<_, true>(simd, |u| $model.sample(u), $least, &mut $ended))
+        } else {
+            dispatch!($level, simd => $school.run::<_, false>(simd, |u| $model.sample(u), $least, &mut $ended))
+        }
+    };
+}
+
+/// Walks under way in one medium, each with the number of its path.
+#[derive(Debug)]
+pub(crate) struct School {
+    level: Level,
+    medium: MediumId,
+    lit: bool,
+    waiting: Vec<(u32, Walker)>,
+}
+
+impl School {
+    pub(crate) fn new(medium: MediumId, lit: bool) -> Self {
+        Self { level: Level::new(), medium, lit, waiting: Vec::new() }
+    }
+
+    pub(crate) fn medium(&self) -> MediumId {
+        self.medium
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.waiting.len()
+    }
+
+    pub(crate) fn push(&mut self, path: u32, walker: Walker) {
+        self.waiting.push((path, walker));
+    }
+
+    /// Walks until fewer than `least` walks are under way, and tells `ended` of each that ends.
+    pub(crate) fn swim(&mut self, phase: &Phase, least: usize, mut ended: impl FnMut(u32, &Walker, End)) {
+        let level = self.level;
+        match phase {
+            Phase::Isotropic(model) => swim!(self, level, model, least, ended),
+            Phase::HenyeyGreenstein(model) => swim!(self, level, model, least, ended),
+            Phase::Rayleigh(model) => swim!(self, level, model, least, ended),
+            Phase::Tabulated(model) => swim!(self, level, model, least, ended),
+            Phase::Blend(model) => swim!(self, level, model, least, ended),
+        }
+    }
+
+    #[inline(always)]
+    fn run<S: Simd, const LIT: bool>(
+        &mut self,
+        simd: S,
+        cosine: impl Fn(f32) -> f32 + Copy,
+        least: usize,
+        ended: &mut impl FnMut(u32, &Walker, End),
+    ) {
+        let mut lanes = Lanes::default();
+        let mut swimming = (0..WIDTH).filter(|&lane| self.fill(&mut lanes, lane)).count();
+        while swimming > 0 && swimming + self.waiting.len() >= least {
+            let codes = simd.vectorize(
+                #[inline(always)]
+                || lanes.collide::<LIT>(cosine),
+            );
+            if codes.iter().fold(0, |any, code| any | code) == step::GOES_ON {
+                continue;
+            }
+            for (lane, code) in codes.into_iter().enumerate() {
+                let (Some(end), path) = (step::end(code), lanes.path[lane]) else { continue };
+                if path != NOBODY {
+                    ended(path, &lanes.get(lane, self.medium, LIT), end);
+                    swimming -= usize::from(!self.fill(&mut lanes, lane));
+                }
+            }
+        }
+        for (lane, path) in lanes.path.into_iter().enumerate().filter(|(_, path)| *path != NOBODY) {
+            self.waiting.push((path, lanes.get(lane, self.medium, LIT)));
+        }
+    }
+
+    /// Gives a lane to the next walk; false if there is none.
+    #[inline(always)]
+    fn fill(&mut self, lanes: &mut Lanes, lane: usize) -> bool {
+        let Some((path, walker)) = self.waiting.pop() else {
+            lanes.path[lane] = NOBODY;
+            return false;
+        };
+        lanes.path[lane] = path;
+        lanes.set(lane, &walker);
+        true
+    }
+}
+
+/// The number of no path.
+const NOBODY: u32 = u32::MAX;
+
+/// The numbers of [`WIDTH`] walkers, one array each.
+#[derive(Debug, Clone, Default)]
+#[repr(align(64))]
+struct Lanes {
+    path: [u32; WIDTH],
+    p: [[f32; WIDTH]; 3],
+    dir: [[f32; WIDTH]; 3],
+    centre: [[f32; WIDTH]; 3],
+    radius: [f32; WIDTH],
+    mean_free_path: [f32; WIDTH],
+    sigma_min: [f32; WIDTH],
+    length: [f32; WIDTH],
+    flight: [f32; WIDTH],
+    cos_theta: [f32; WIDTH],
+    key: [[u32; WIDTH]; 2],
+    counter: [u32; WIDTH],
+    collisions: [u32; WIDTH],
+    limit: [u32; WIDTH],
+}
+
+impl Lanes {
+    #[inline(always)]
+    fn collide<const LIT: bool>(&mut self, cosine: impl Fn(f32) -> f32 + Copy) -> [u32; WIDTH] {
+        let mut codes = [0; WIDTH];
+        for (lane, code) in codes.iter_mut().enumerate() {
+            let mut walker = self.get(lane, MediumId(0), LIT);
+            *code = step::collide::<LIT>(&mut walker, cosine);
+            self.set(lane, &walker);
+        }
+        codes
+    }
+
+    #[inline(always)]
+    fn get(&self, i: usize, medium: MediumId, lit: bool) -> Walker {
+        let vector = |v: &[[f32; WIDTH]; 3]| Vec3::new(v[0][i], v[1][i], v[2][i]);
+        Walker {
+            medium,
+            p: vector(&self.p),
+            dir: vector(&self.dir),
+            rng: Rng { key: [self.key[0][i], self.key[1][i]], counter: self.counter[i] },
+            ball: Ball { centre: vector(&self.centre), radius: self.radius[i] },
+            mean_free_path: self.mean_free_path[i],
+            sigma_min: self.sigma_min[i],
+            lit,
+            collisions: self.collisions[i],
+            limit: self.limit[i],
+            length: self.length[i],
+            flight: self.flight[i],
+            cos_theta: self.cos_theta[i],
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, walker: &Walker) {
+        let put = |to: &mut [[f32; WIDTH]; 3], v: Vec3| (to[0][i], to[1][i], to[2][i]) = (v.x, v.y, v.z);
+        put(&mut self.p, walker.p);
+        put(&mut self.dir, walker.dir);
+        put(&mut self.centre, walker.ball.centre);
+        self.radius[i] = walker.ball.radius;
+        self.mean_free_path[i] = walker.mean_free_path;
+        self.sigma_min[i] = walker.sigma_min;
+        self.length[i] = walker.length;
+        self.flight[i] = walker.flight;
+        self.cos_theta[i] = walker.cos_theta;
+        (self.key[0][i], self.key[1][i]) = (walker.rng.key[0], walker.rng.key[1]);
+        self.counter[i] = walker.rng.counter;
+        self.collisions[i] = walker.collisions;
+        self.limit[i] = walker.limit;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::phase::{Isotropic, Rayleigh};
+
+    /// The instruction sets of this machine.
+    fn levels() -> [Level; 4] {
+        let best = Level::new();
+        let (sse4_2, avx2) = (best.as_sse4_2().map(Simd::level), best.as_avx2().map(Simd::level));
+        [best, Level::baseline(), sse4_2.unwrap_or(best), avx2.unwrap_or(best)]
+    }
+
+    fn walker(number: u32, medium: MediumId, lit: bool) -> Walker {
+        let dir = Vec3::new(0.6, 0.0, -0.8);
+        Walker {
+            medium,
+            p: Vec3::new(1.0, 2.0, 3.0),
+            dir: if number.is_multiple_of(2) { dir } else { Vec3::Z },
+            rng: Rng::for_sample((number, 0), 0, 1),
+            ball: Ball { centre: Vec3::new(1.0, 2.0, 3.0), radius: 2.0 + number as f32 * 0.1 },
+            mean_free_path: 0.3,
+            sigma_min: 2.0,
+            lit,
+            collisions: 0,
+            limit: 1 + number % 50,
+            length: 0.0,
+            flight: 0.0,
+            cos_theta: 1.0,
+        }
+    }
+
+    /// Every instruction set of this machine gives the bits that one walk after the other gives, for every model.
+    #[test]
+    fn every_instruction_set_walks_alike() {
+        let forward = Phase::henyey_greenstein(0.9).unwrap();
+        let phases = [
+            Phase::Isotropic(Isotropic),
+            forward.clone(),
+            Phase::Rayleigh(Rayleigh),
+            Phase::tabulated(&[0.5, 0.1, 3.0]).unwrap(),
+            Phase::blend(&forward, &Phase::Rayleigh(Rayleigh), 0.5).unwrap(),
+        ];
+        let medium = MediumId(0);
+        for phase in &phases {
+            for (lit, level) in [true, false].into_iter().flat_map(|lit| levels().map(move |level| (lit, level))) {
+                let mut school = School { level, medium, lit, waiting: Vec::new() };
+                (0..100).for_each(|number| school.push(number, walker(number, medium, lit)));
+                let mut ends = 0;
+                school.swim(phase, 1, |number, together, end| {
+                    let mut alone = walker(number, medium, lit);
+                    assert_eq!(alone.alone(phase), end, "{phase:?} {number}");
+                    assert_eq!(alone, *together, "{phase:?} {number}");
+                    ends += 1;
+                });
+                assert_eq!((ends, school.len()), (100, 0));
+            }
+        }
+    }
+}

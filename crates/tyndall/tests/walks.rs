@@ -1,0 +1,138 @@
+//! Walks deep inside media: the bits of many at once are those of one after the other, and both have the light that rays find.
+
+mod common;
+
+use common::{World, diffuse, glass, medium};
+use tyndall::{
+    camera::{CameraModel, Perspective},
+    integrator::{Deep, VolPath},
+    light::{Light, PointLight},
+    material::Material,
+    math::Vec3,
+    medium::Homogeneous,
+    phase::Phase,
+    render::{Rendering, Settings, render},
+    sampling::SamplerKind,
+    scene::Scene,
+    spectrum::ColorMode,
+};
+
+fn followed(deep: Deep) -> VolPath {
+    VolPath { deep, ..VolPath::default() }
+}
+
+fn picture(scene: &Scene, integrator: &VolPath, settings: &Settings) -> Rendering {
+    render(scene, integrator, settings, &())
+}
+
+/// Dense bodies side by side: coloured, with a boundary of glass and without one, open to a sky and a lamp; `phase` for
+/// all of them.
+fn dense_still_life(color: ColorMode, phase: &Phase) -> Scene {
+    let mut world = World::seen(Vec3::new(0.0, 1.0, 6.0), Vec3::new(0.0, 0.4, 0.0));
+    world.color = color;
+    world.camera.view.model = CameraModel::Perspective(Perspective::pinhole([-0.4, 0.4, -0.3, 0.3]));
+    (world.camera.width, world.camera.height) = (32, 24);
+    let of = |sigma_a, sigma_s| Some(Homogeneous { phase: phase.clone(), ..medium(sigma_a, sigma_s, 0.0) });
+    world.sphere(Vec3::new(-1.1, 0.5, 0.0), 0.5, glass(1.4, 0.0), of([0.01, 0.05, 0.2], [20.0, 30.0, 40.0]));
+    let (low, high) = (Vec3::new(-0.4, 0.0, -0.4), Vec3::new(0.4, 0.8, 0.4));
+    world.cuboid(low, high, Material::Null, of([0.02, 0.0, 0.1], [10.0, 20.0, 80.0]));
+    world.sphere(Vec3::new(1.1, 0.4, 0.2), 0.4, Material::Null, of([3.0, 0.5, 0.0], [30.0, 30.0, 30.0]));
+    world.cuboid(Vec3::new(-9.0, -1.0, -9.0), Vec3::new(9.0, 0.0, 9.0), diffuse(0.5), None);
+    world.shining_disk(3.0, 0.7, diffuse(0.0), 10.0);
+    world.sky(0.3);
+    world.scene()
+}
+
+fn phases() -> [Phase; 5] {
+    let forward = Phase::henyey_greenstein(0.8).unwrap();
+    let back = Phase::henyey_greenstein(-0.3).unwrap();
+    [
+        Phase::henyey_greenstein(0.0).unwrap(),
+        forward.clone(),
+        Phase::Rayleigh(tyndall::phase::Rayleigh),
+        Phase::tabulated(&[0.5, 0.1, 0.2, 1.0, 3.0]).unwrap(),
+        Phase::blend(&forward, &back, 0.3).unwrap(),
+    ]
+}
+
+/// Also with a limit on the depth, which walks must keep, and with more samples than paths that are held at once.
+#[test]
+fn many_paths_at_once_give_the_bits_of_one_after_the_other() {
+    for color in [ColorMode::Rgb, ColorMode::Mono, ColorMode::Spectral] {
+        for phase in phases() {
+            let scene = dense_still_life(color, &phase);
+            for max_depth in [None, Some(20)] {
+                let settings = Settings { spp: 5, seed: 3, ..Settings::default() };
+                let of = |deep| picture(&scene, &VolPath { deep, max_depth, ..VolPath::default() }, &settings);
+                let (alone, together) = (of(Deep::Alone), of(Deep::Together));
+                assert_eq!(alone.film, together.film, "{color:?} {phase:?} {max_depth:?}");
+                let counts =
+                    |r: &Rendering| (r.tally.collisions, r.tally.rays, r.tally.shadow_rays, r.tally.truncated_paths);
+                assert_eq!(counts(&alone), counts(&together));
+                assert_eq!((alone.tally.bad_samples, alone.tally.leaks), (0, 0));
+            }
+        }
+    }
+}
+
+/// Mean and standard error of all pixels of a channel.
+fn mean(rendering: &Rendering, channel: usize) -> (f64, f64) {
+    let n = rendering.film.pixels.len() as f64;
+    let errors = rendering.film.pixels.iter().map(|p| f64::from(p.standard_error()[channel]).powi(2));
+    let sum: f64 = rendering.film.pixels.iter().map(|p| f64::from(p.mean()[channel])).sum();
+    (sum / n, errors.sum::<f64>().sqrt() / n)
+}
+
+/// The same scenes with a ray for each flight: 45 means agree (a |z| above 4.5 has a chance of 7e-6).
+#[test]
+fn walks_find_the_light_that_rays_find() {
+    for color in [ColorMode::Rgb, ColorMode::Mono, ColorMode::Spectral] {
+        for phase in phases() {
+            let scene = dense_still_life(color, &phase);
+            let of = |deep, seed| {
+                let settings = Settings { spp: 48, seed, sampler: SamplerKind::Independent, ..Settings::default() };
+                picture(&scene, &followed(deep), &settings)
+            };
+            let (walks, rays) = (of(Deep::Together, 1), of(Deep::Traced, 2));
+            for c in 0..3 {
+                let ((a, ea), (b, eb)) = (mean(&walks, c), mean(&rays, c));
+                let z = (a - b) / ea.hypot(eb);
+                assert!(z.abs() < 4.5, "{color:?} {phase:?}, channel {c}: {a} ± {ea}, {b} ± {eb}: z = {z:.1}");
+                assert!(ea < 0.02 * a, "{ea} {a}");
+            }
+        }
+    }
+}
+
+/// Lamps without a surface, few and many, in a ball: no clearance reaches over one.
+#[test]
+fn no_clearance_reaches_over_a_lamp_without_a_surface() {
+    let mut random = testkit::Stream::new(5);
+    let mut place = || Vec3::from_array([0; 3].map(|_| random.next_f64() as f32 * 2.0 - 1.0));
+    for lamps in [0, 1, 5, 40] {
+        let mut world = World::seen(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO);
+        world.sphere(Vec3::ZERO, 2.0, Material::Null, Some(medium([0.0; 3], [1.0; 3], 0.0)));
+        let places: Vec<_> = (0..lamps).map(|_| place()).collect();
+        for &position in &places {
+            world.lights.push(Light::Point(PointLight { position, intensity: common::grey(1.0), luminance: 1.0 }));
+        }
+        let scene = world.scene();
+        for _ in 0..1000 {
+            let p = place();
+            let nearest = places.iter().map(|lamp| lamp.distance(p)).fold(2.0 - p.length(), f32::min);
+            let clearance = scene.clearance(p, f32::INFINITY);
+            assert!(clearance <= nearest * (1.0 + 1e-6), "{lamps} lamps, {p}: {clearance} above {nearest}");
+            assert!(lamps > 16 || clearance > nearest * (1.0 - 1e-5), "{lamps} lamps, {p}: {clearance} for {nearest}");
+        }
+    }
+}
+
+/// Deep inside a clear ball of 10⁴ free paths hardly a ray is cast.
+#[test]
+fn collisions_deep_inside_cast_no_rays() {
+    let mut world = World::seen(Vec3::new(0.0, 0.0, 3.0), Vec3::ZERO);
+    world.sphere(Vec3::ZERO, 1.0, glass(1.4, 0.0), Some(medium([0.5; 3], [5000.0; 3], 0.9)));
+    world.sky(1.0);
+    let tally = picture(&world.scene(), &VolPath::default(), &Settings { spp: 2000, ..Settings::default() }).tally;
+    assert!(tally.collisions > 20 * (tally.rays + tally.shadow_rays), "{tally:?}");
+}
