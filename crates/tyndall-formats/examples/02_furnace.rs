@@ -41,7 +41,7 @@ fn ball(albedo: f32) -> Result<Scene, Box<dyn std::error::Error>> {
         Object { name: "ball".into(), material: MaterialId(0), interface, emission: Emission::None, body: None };
     let window = [-0.001, 0.001, -0.001, 0.001]; // looks along +z, so narrowly that it is one ray
     let (to_world, filter) = (Transform::IDENTITY, Filter::default());
-    let view = View { to_world, model: CameraModel::Perspective(Perspective::pinhole(window)) };
+    let view = View { to_world, model: CameraModel::Perspective(Perspective::pinhole(window)), near: 0.0 };
     let camera = Camera { view, width: 1, height: 1, filter, exposure: 1.0, medium: None, layers: Vec::new() };
     let sky = Light::Constant(ConstantEnvironment { radiance: Spectrum::illuminant_rgb([1.0; 3]), luminance: 1.0 });
     let lights = LightTable::new(vec![sky]);

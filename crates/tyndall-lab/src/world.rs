@@ -178,6 +178,7 @@ impl World {
             view: View {
                 to_world: Transform::new(DMat4::from_translation(source)).unwrap_or(Transform::IDENTITY),
                 model: CameraModel::Perspective(Perspective::pinhole([-1.0, 1.0, -1.0, 1.0])),
+                near: 0.0,
             },
             width: 1,
             height: 1,

@@ -27,7 +27,7 @@ fn meter(pieces: Vec<EmitterShape>) -> IrradianceMeter {
 }
 
 fn view(model: CameraModel) -> View {
-    View { to_world: Transform::IDENTITY, model }
+    View { to_world: Transform::IDENTITY, model, near: 0.0 }
 }
 
 /// A place of the image, uniform, sees a direction: of the equal-area map uniform over the sphere, of latitude and
@@ -116,6 +116,7 @@ fn a_distant_camera_sees_its_target_evenly() {
     let seen = |target| View {
         to_world: Transform::new(look).unwrap(),
         model: CameraModel::Distant(Distant { centre, radius, target }),
+        near: 0.0,
     };
     let camera = seen(Target::Disk);
     let mut stream = Stream::new(5);
@@ -217,6 +218,7 @@ fn a_batch_shows_its_views_side_by_side() {
     let at = |x: f32| View {
         to_world: Transform::new(glam::DMat4::from_translation(glam::DVec3::new(f64::from(x), 0.0, 0.0))).unwrap(),
         model: CameraModel::RadianceMeter(RadianceMeter),
+        near: 0.0,
     };
     let batch = view(CameraModel::Batch(Batch { views: vec![at(1.0), at(2.0), at(3.0)] }));
     let seen = [0.0, 0.3, 0.34, 0.6, 0.7, 1.0].map(|x| batch.ray(Vec2::new(x, 0.5), Vec2::ZERO).ray.origin.x);

@@ -413,7 +413,7 @@ fn placed_media_without_priorities_hold_and_are_found() {
 fn a_batch_is_where_its_cameras_are() {
     let mut world = World::seen(Vec3::new(0.0, 5.0, 0.0), Vec3::new(0.0, 9.0, 0.0));
     let views = vec![world.camera.view.clone(), world.camera.view.clone()];
-    world.camera.view = View { to_world: Transform::IDENTITY, model: CameraModel::Batch(Batch { views }) };
+    world.camera.view = View { to_world: Transform::IDENTITY, model: CameraModel::Batch(Batch { views }), near: 0.0 };
     world.sphere(Vec3::ZERO, 1.0, Material::Null, Some(absorber(1.0)));
     world.sky(1.0);
     assert_mean("batch", &world.measure(&VolPath::default(), 1_000), [1.0; 3], 0.01);

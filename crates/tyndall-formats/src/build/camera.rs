@@ -11,6 +11,9 @@ use tyndall::{
     film::{Filter, Kernel, Lobed},
 };
 
+use tyndall::math::{Vec2, Vec3};
+use tyndall::shape::Geometry;
+
 use super::{Builder, medium_id, shapes::Shapes};
 use crate::{
     desc::{
@@ -102,7 +105,11 @@ impl<'a> Builder<'a> {
                 CameraModel::Batch(self.batch(camera, cameras, film, shapes)?)
             }
         };
-        Some(View { to_world: self.transform(to_world, camera.span)?, model })
+        let to_world = self.transform(to_world, camera.span)?;
+        let view = View { to_world, model, near: 0.0 };
+        let near = camera.near as f32;
+        // Where nothing is nearer, rays begin at the eye, as they do in renderers without a near clip.
+        Some(if near > 0.0 && may_be_nearer(&view, &shapes.geometry, near) { View { near, ..view } } else { view })
     }
 
     /// The surface of a shape that is not part of the scene.
@@ -271,6 +278,23 @@ fn parse_lens(text: &str) -> Result<Vec<Element>, String> {
         Some(i) => Err(format!("element {}: thickness and index are at least 0, a diameter is positive", i + 1)),
         None => Ok(elements),
     }
+}
+
+/// Whether a surface may be at a depth between the eye and `near`: around the eye, or for parallel rays in the whole scene.
+fn may_be_nearer(view: &View, geometry: &Geometry, near: f32) -> bool {
+    let at = |x: f32, y: f32| view.ray(Vec2::new(x, y), Vec2::splat(0.5)).ray;
+    let eye = at(0.5, 0.5).origin;
+    let depth = view.to_world.vector(Vec3::Z);
+    if matches!(view.model, CameraModel::Orthographic(_)) {
+        let depths = geometry.bounds().corners().map(|corner| (corner - eye).dot(depth) / depth.length_squared());
+        return depths.into_iter().fold(f32::INFINITY, f32::min) < near;
+    }
+    // The farthest corner of the near plane, and the lens.
+    let corner = at(0.0, 0.0).dir.dot(depth).min(at(1.0, 1.0).dir.dot(depth)).min(at(0.0, 1.0).dir.dot(depth));
+    let reach = near * depth.length_squared() / corner.min(at(1.0, 0.0).dir.dot(depth));
+    let lens = [0.0, 0.5, 1.0].map(|u| view.ray(Vec2::splat(0.5), Vec2::new(u, 0.0)).ray.origin.distance(eye));
+    let reach = reach + 2.0 * lens.into_iter().fold(0.0, f32::max);
+    geometry.clearance(eye, reach) < reach
 }
 
 #[cfg(test)]

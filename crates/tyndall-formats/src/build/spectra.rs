@@ -24,8 +24,8 @@ pub(super) enum Measure {
     Coefficient,
     /// Any number: a height, a mean cosine.
     Number,
-    /// An index of refraction, at least 0. It filters no light: in `rgb` mode its measured values are seen under equal
-    /// energy, as Mitsuba sees those of its metals.
+    /// An index of refraction, at least 0. In `rgb` mode those that are known by name are seen under equal energy, and those
+    /// that are written down under D65, both as in Mitsuba.
     Index,
 }
 
@@ -55,7 +55,8 @@ impl Builder<'_> {
                 let table = self.table(other, span)?;
                 let values: Vec<_> = table.values.iter().map(|v| f64::from(*v)).collect();
                 self.check(&values, measure, span)?;
-                let role = if measure == Measure::Index { Role::Illuminant } else { Role::Reflectance };
+                let is_known = matches!(other, SpectrumDesc::Named(_));
+                let role = if measure == Measure::Index && is_known { Role::Illuminant } else { Role::Reflectance };
                 self.sampled(&table, role, span).map(Spectrum::Sampled)
             }
         }
@@ -264,17 +265,33 @@ mod tests {
         let scene =
             built(r#"Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" Shape "sphere""#)
                 .unwrap();
+        assert_indices(&scene, [[0.143_037, 0.375_306, 1.442_04], [3.982_99, 2.385_56, 1.603_36]], 1e-3);
+    }
+
+    fn assert_indices(scene: &tyndall::scene::Scene, expected: [[f32; 3]; 2], tolerance: f32) {
         let metal = scene.materials.iter().find_map(|m| match m {
             tyndall::material::Material::Conductor { metal: tyndall::material::Metal::Index { eta, k }, .. } => {
                 Some([eta, k].map(|part| part.constant().unwrap().rgb()))
             }
             _ => None,
         });
-        let expected = [[0.143_037f32, 0.375_306, 1.442_04], [3.982_99, 2.385_56, 1.603_36]];
-        let found = metal.unwrap();
-        for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
-            assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
+        for (found, expected) in metal.unwrap().iter().zip(&expected) {
+            let greatest = expected.iter().fold(0.0, |most, v| f32::max(most, *v));
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < tolerance * greatest, "{found} {expected}");
+            }
         }
+    }
+
+    /// What Mitsuba 3.9.1 makes in RGB of the gold of its `bsdf_blendbsdf` scene, which is written down.
+    #[test]
+    fn indices_that_are_written_down_are_seen_under_d65() {
+        let scene = built(
+            r#"Material "conductor" "spectrum eta" [300 1.8 400 1.65 500 0.9 600 0.2 700 0.16 800 0.18]
+               "spectrum k" [300 1.92 400 1.95 500 1.95 600 2.97 700 3.8 800 5.12] Shape "sphere""#,
+        );
+        let expected = [[0.0452341, 0.585709, 1.33692], [3.38869, 2.34904, 1.87516]];
+        assert_indices(&scene.unwrap(), expected, 2e-3);
     }
 
     /// pbrt divides every spectrum of light but RGB by its luminance, so that `scale` is the luminance.

@@ -207,3 +207,20 @@ fn shapes_that_are_placed_by_copies_do_not_shine() {
     let scene = scene.unwrap();
     assert!(scene.lights.lights.is_empty() && scene.geometry.census().instances == 2);
 }
+
+/// A shell of radius 0.3 around the eye: seen from within without a near clip, and skipped by one of 0.5. One that nothing
+/// is nearer than is left out, so that rays keep their bits.
+#[test]
+fn what_is_nearer_than_the_near_clip_is_not_seen() {
+    for (near, kept) in [("0.5", 0.5), ("0.2", 0.0), ("0.000001", 0.0)] {
+        let text = format!(
+            "<scene version=\"3.0.0\"><sensor type=\"perspective\"><float name=\"near_clip\" value=\"{near}\"/></sensor>
+             <shape type=\"sphere\"><float name=\"radius\" value=\"0.3\"/></shape></scene>"
+        );
+        let (desc, sources) = crate::mitsuba::parse(std::path::Path::new("scene.xml"), &text, &[]).unwrap();
+        let (scene, _) = super::build(&desc, sources, tyndall::spectrum::ColorMode::Rgb).unwrap();
+        assert_eq!(scene.camera.view.near, kept);
+        let ray = scene.camera.sample_ray((0, 0), [0.5; 4]).ray;
+        assert_eq!(scene.geometry.intersect(&ray, f32::INFINITY).is_none(), kept > 0.0);
+    }
+}

@@ -17,6 +17,8 @@ pub struct CameraDesc {
     pub to_world: DMat4,
     /// How it sees.
     pub kind: CameraKind,
+    /// Surfaces at a depth below this are not seen \[scene units\]; 0 for a camera that sees all.
+    pub near: f64,
     /// The medium that the camera is in, if the file says.
     pub medium: Option<Spanned<MediumId>>,
 }
@@ -321,7 +323,7 @@ mod tests {
         let span = Span::new(FileId(0), 0, 0);
         let kind =
             CameraKind::Perspective { fov: Spanned::new(90.0, span), frame: FrameDesc::of_film(axis), lens: None };
-        CameraDesc { span, to_world: DMat4::IDENTITY, kind, medium: None }
+        CameraDesc { span, to_world: DMat4::IDENTITY, kind, near: 0.0, medium: None }
     }
 
     /// tan 45° = 1, so a field of view of 90° reaches to ±1 along its own axis.

@@ -57,6 +57,11 @@ pub(super) fn sensor<'t>(
 }
 
 /// A camera, its film and sampler left to the sensor that it belongs to.
+/// The near clip of a sensor that has none written \[scene units\].
+pub(crate) const NEAR_CLIP: f64 = 1e-2;
+/// Stands for no near clip \[scene units\].
+pub(crate) const NO_NEAR_CLIP: f64 = 1e-6;
+
 fn camera<'t>(
     builder: &mut Builder<'t>,
     mut object: Object<'t>,
@@ -110,7 +115,14 @@ fn camera<'t>(
         }
         _ => CameraKind::Batch(cameras),
     };
-    object.ignore(&["near_clip", "far_clip"], "nothing is too near or too far to be seen", report);
+    let near = match kind {
+        CameraKind::Perspective { .. } | CameraKind::Orthographic { .. } => near_clip(&mut object, report),
+        _ => {
+            object.ignore(&["near_clip"], "nothing is too near to be seen", report);
+            0.0
+        }
+    };
+    object.ignore(&["far_clip"], "nothing is too far to be seen", report);
     if plugin != "thinlens" {
         object.ignore(&["focus_distance"], "without a lens everything is in focus", report);
     }
@@ -118,7 +130,7 @@ fn camera<'t>(
     object.ignore(&["srf"], NO_RESPONSE, report);
     object.finish(report);
     let to_world = to_world * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-    Some(CameraDesc { span, to_world, kind, medium })
+    Some(CameraDesc { span, to_world, kind, near, medium })
 }
 
 impl<'t> Builder<'t> {
@@ -150,6 +162,13 @@ impl<'t> Builder<'t> {
         }
         camera(self, object, plugin, None)
     }
+}
+
+/// Mitsuba's near clip must be positive: one of [`NO_NEAR_CLIP`] or less is none.
+fn near_clip(object: &mut Object, report: &mut Report) -> f64 {
+    let near =
+        object.float("near_clip", |near| near > 0.0, "greater than 0", report).map_or(NEAR_CLIP, |near| near.value);
+    if near <= NO_NEAR_CLIP { 0.0 } else { near }
 }
 
 /// A lens of radius `aperture_radius`, focused at `focus_distance`: Mitsuba's far clip, if nothing is said.

@@ -33,6 +33,7 @@ mod words;
 
 pub(crate) use aov::word as layer_word;
 pub(crate) use bsdf::INDICES;
+pub(crate) use camera::{NEAR_CLIP, NO_NEAR_CLIP};
 pub(crate) use emitter::facing;
 pub(crate) use transform::look_at;
 

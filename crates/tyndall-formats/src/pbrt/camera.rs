@@ -23,7 +23,7 @@ impl CameraDesc {
     pub(super) fn pbrt_default(span: Span) -> Self {
         let frame = FrameDesc::of_film(FovAxis::Smaller);
         let kind = CameraKind::Perspective { fov: Spanned::new(90.0, span), frame, lens: None };
-        Self { span, to_world: DMat4::IDENTITY, kind, medium: None }
+        Self { span, to_world: DMat4::IDENTITY, kind, near: 0.0, medium: None }
     }
 }
 
@@ -54,13 +54,17 @@ impl Reader {
                     .help("\"shutterclose\" must be after \"shutteropen\""),
             );
         }
+        let near = match kind {
+            CameraKind::Perspective { .. } | CameraKind::Orthographic { .. } => p.not_negative("near", 0.0).value,
+            _ => 0.0,
+        };
         self.finish_params(p);
         let medium = self.state.now.interface.and_then(|i| i.outside.map(|medium| Spanned::new(medium, i.span)));
         if self.settings.camera.is_some() {
             self.ignore(s.whole, "it replaces the camera before");
         }
         self.settings.shutter = Some(shutter);
-        self.settings.camera = Some(CameraDesc { span: s.whole, to_world, kind, medium });
+        self.settings.camera = Some(CameraDesc { span: s.whole, to_world, kind, near, medium });
     }
 }
 

@@ -58,6 +58,8 @@ pub struct View {
     pub to_world: Transform,
     /// How it sees.
     pub model: CameraModel,
+    /// Depth at which the rays of a perspective or an orthographic camera begin [length of its space].
+    pub near: f32,
 }
 
 /// How places on the film become rays.
@@ -119,6 +121,8 @@ impl View {
             CameraModel::Batch(batch) => return batch.ray(place, lens),
         };
         let Ray { origin, dir } = local.ray;
+        // These have a depth of 1 for each unit of their length.
+        let origin = if self.near > 0.0 { origin + dir * self.near } else { origin };
         let ray = Ray::new(self.to_world.point(origin), self.to_world.vector(dir).normalize());
         CameraRay { ray, ..local }
     }

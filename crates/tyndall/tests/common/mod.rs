@@ -79,6 +79,7 @@ impl World {
             view: View {
                 to_world: Transform::new(to_world).unwrap(),
                 model: CameraModel::Perspective(Perspective::pinhole([-1e-4, 1e-4, -1e-4, 1e-4])),
+                near: 0.0,
             },
             width: 1,
             height: 1,

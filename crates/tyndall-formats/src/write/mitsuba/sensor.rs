@@ -7,7 +7,7 @@ use super::placed;
 use crate::desc::{
     CameraDesc, CameraKind, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc, Spanned, ThinLensDesc,
 };
-use crate::mitsuba::layer_word;
+use crate::mitsuba::{NEAR_CLIP, NO_NEAR_CLIP, layer_word};
 use crate::write::number::double;
 use glam::{DMat4, DVec3};
 
@@ -103,6 +103,10 @@ impl Pen<'_, '_> {
                 return None;
             }
         };
+        if matches!(camera.kind, CameraKind::Perspective { .. } | CameraKind::Orthographic { .. }) {
+            let near = if camera.near == 0.0 { NO_NEAR_CLIP } else { camera.near };
+            element.float_unless("near_clip", near, NEAR_CLIP);
+        }
         if let Some(medium) = camera.medium {
             element.push(self.medium_ref(medium.value));
         }

@@ -23,7 +23,7 @@ impl Pen<'_, '_> {
             self.interface(None, Some(medium.value));
         }
         let width = self.view(camera);
-        let entity = match &camera.kind {
+        let mut entity = match &camera.kind {
             CameraKind::Perspective { fov, frame, lens } => self.perspective(camera, *fov, frame, *lens),
             CameraKind::Orthographic { frame } => self.orthographic(camera, frame, width),
             CameraKind::Spherical { mapping } => {
@@ -39,6 +39,7 @@ impl Pen<'_, '_> {
             CameraKind::RadianceMeter => return self.lacks(camera.span, "the sensor \"radiancemeter\""),
             CameraKind::Batch(_) => return self.lacks(camera.span, "several sensors in one image"),
         };
+        entity.float_unless("near", camera.near, 0.0);
         self.entity(entity);
     }
 

@@ -73,7 +73,8 @@ impl Stage {
     /// Looked at along rays side by side, one for each pair of places.
     pub(super) fn seen_by_many(rays: impl Iterator<Item = [Vec3; 2]>) -> Self {
         let model = || CameraModel::Perspective(Perspective::pinhole([-1e-5, 1e-5, -1e-5, 1e-5]));
-        let views = rays.map(|[eye, target]| View { to_world: looking(eye, target), model: model() }).collect();
+        let views =
+            rays.map(|[eye, target]| View { to_world: looking(eye, target), model: model(), near: 0.0 }).collect();
         Self::by(CameraModel::Batch(Batch { views }), Transform::IDENTITY)
     }
 
@@ -220,7 +221,7 @@ impl Stage {
     /// The world.
     pub(super) fn scene(self) -> Made<Scene> {
         let camera = Camera {
-            view: View { to_world: self.to_world, model: self.model },
+            view: View { to_world: self.to_world, model: self.model, near: 0.0 },
             width: SIDE,
             height: SIDE,
             filter: Filter::default(),
