@@ -248,7 +248,8 @@ fn opens_straight(medium: MediumId, bodies: &[Body]) -> bool {
     !bends && bodies.iter().any(|body| body.medium == Some(medium))
 }
 
-/// All of space, unless every surface that knows the medium has it inside, is closed, and stands in the world itself.
+/// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
+/// in the world itself.
 fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Object], bodies: &[Body]) -> Bounds {
     let mut extent = Bounds::EMPTY;
     for (index, object) in objects.iter().enumerate() {
@@ -262,7 +263,7 @@ fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Obj
             return Bounds::EVERYTHING;
         }
         if interface.inside == Some(medium) {
-            if geometry.is_in_group(id) || !is_closed() {
+            if geometry.is_in_group(id) || !is_closed() || geometry.faces_inward(id) {
                 return Bounds::EVERYTHING;
             }
             extent = extent.union(geometry.object_bounds(id));

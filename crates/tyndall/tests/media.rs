@@ -530,3 +530,19 @@ fn balls_of_any_depth_and_any_size_vanish_and_shine() {
         }
     }
 }
+
+/// A box whose normals point inwards has its medium around it: of the way up to a lamp at height 4 the 3 above the box
+/// absorb, `L exp(−3σ)`.
+#[test]
+fn a_body_that_is_inside_out_has_its_medium_around_it() {
+    let seen = |inside| {
+        let mut world = World::seen(Vec3::new(0.0, -5.0, 0.0), Vec3::new(0.0, 4.0, 1e-3));
+        // Mirrored in y.
+        world.cuboid(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, -1.0, 1.0), Material::Null, Some(inside));
+        world
+    };
+    let mut lamp = seen(absorber(1.0));
+    lamp.shining_disk(4.0, 1.0, diffuse(0.0), 2.0);
+    let expected = DEPTHS.map(|s| 2.0 * f64::from(-3.0 * s).exp());
+    assert_mean("lamp", &lamp.measure(&VolPath::default(), 20_000), expected, 0.02);
+}
