@@ -130,7 +130,7 @@ pub const ORACLES: &[Oracle] = &[
         name: "point-decay",
         about: "relaxation length of the fluence far from a point source",
         source: "exact: c ν0 artanh(1/ν0) = 1 (Case and Zweifel 1967)",
-        sees: &[Absorption, PhaseNormalisation],
+        sees: &[PhaseNormalisation],
         measure: growth::decay,
     },
     Oracle {
