@@ -109,9 +109,10 @@ pub(crate) fn single(family: &'static str, effort: Effort) -> Made<Vec<Experimen
     cases.into_iter().enumerate().map(experiment).collect()
 }
 
-/// Of the largest tables a part takes fewer rows, and those that all integrators render: a multiple of four.
+/// Of the largest tables every ninth row is taken, of which all integrators render every fourth; a part takes fewer rows, and
+/// those that all render.
 fn coarse(effort: Effort) -> usize {
-    if effort.every > 1 { 3 * effort.every } else { 1 }
+    if effort.every > 1 { 3 * effort.every } else { 9 }
 }
 
 /// Columns of rays with which a mean over azimuths is taken.
