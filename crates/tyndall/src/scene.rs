@@ -100,9 +100,10 @@ impl Scene {
         let facts = Facts {
             // A surface of a body may not be there.
             has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
-            lit: (0..media.len())
-                .map(|i| MediumId(i as u32))
-                .map(|m| opens_straight(m, &bodies) || can_be_lit(m, &geometry, &objects, &materials, &lights))
+            lit: (0..)
+                .map(MediumId)
+                .zip(&extent)
+                .map(|(m, extent)| opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, &materials, &lights))
                 .collect(),
             deepest: extent.iter().map(|extent| deepest(extent, &geometry)).collect(),
             extent,
@@ -209,29 +210,20 @@ impl Scene {
     }
 }
 
-/// A medium is lit directly if it has an open boundary (one without a material, or with holes), if it fills the space of a light, or
-/// if it has no boundary that we know of.
+/// A medium is lit directly if it has an open boundary (one without a material, or with holes), if it fills the space of a
+/// light, or if it reaches as far as we know.
 fn can_be_lit(
     medium: MediumId,
-    geometry: &Geometry,
+    extent: &Bounds,
     objects: &[Object],
     materials: &[Material],
     lights: &LightTable,
 ) -> bool {
     let touches = |o: &Object| o.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium));
-    let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], materials);
-    let mut body = Bounds::EMPTY;
-    for (index, object) in objects.iter().enumerate().filter(|(_, object)| touches(object)) {
-        let id = crate::shape::ObjectId(index as u32);
-        // On the outside of a body the medium reaches as far as its other boundaries, which may be nowhere.
-        let surrounds = object.interface.is_some_and(|i| i.outside == Some(medium)) || geometry.faces_inward(id);
-        let placed = geometry.is_in_group(id);
-        if is_open(object) || surrounds || placed {
-            return true;
-        }
-        body = body.union(geometry.object_bounds(id));
-    }
-    body.is_empty() || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(&body, &b))
+    objects.iter().any(|o| touches(o) && may_be_open(&materials[o.material.0 as usize], materials))
+        || *extent == Bounds::EVERYTHING
+        || extent.is_empty()
+        || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(extent, &b))
 }
 
 /// Whether light may leave the bodies of a medium straight: unless each body of the scene has a surface that bends it

@@ -557,3 +557,28 @@ fn a_body_that_is_inside_out_has_its_medium_around_it() {
     let z = (volpath.mean[0] - analog.mean[0]) / volpath.standard_error[0].hypot(analog.standard_error[0]);
     assert!(z.abs() < 4.5 && analog.standard_error[0] < 0.01, "{volpath:?} {analog:?}");
 }
+
+/// Fog that only a body of glass knows, and that is all around it (it is inside out), is lit by the lamps in it: light
+/// samples and the naive twin agree, seen from the fog itself and through the glass.
+#[test]
+fn fog_around_glass_that_is_inside_out_is_lit() {
+    for camera in [Some(MediumId(0)), None] {
+        let world = || {
+            let mut world = World::seen(Vec3::new(0.0, 0.0, -4.0), Vec3::ZERO);
+            let fog = medium([0.01; 3], [0.1, 0.2, 0.4], 0.0);
+            // Mirrored in y.
+            world.cuboid(Vec3::new(-1.0, 1.0, -2.0), Vec3::new(1.0, -1.0, -1.0), glass(1.5, 0.0), Some(fog));
+            world.camera.medium = camera;
+            world.shining_disk(4.0, 3.0, diffuse(0.0), 2.0);
+            world
+        };
+        let naive = world().measure(&Analog, 400_000);
+        let clever = world().measure(&VolPath::default(), 40_000);
+        for c in 0..3 {
+            let error = naive.standard_error[c].hypot(clever.standard_error[c]);
+            let z = (clever.mean[c] - naive.mean[c]) / error;
+            assert!(z.abs() < 4.5, "{camera:?}, channel {c}: {} and {} (z = {z:.1})", clever.mean[c], naive.mean[c]);
+            assert!(error < 0.02 * naive.mean[c], "too blunt: {error:.2e} of {:.2e}", naive.mean[c]);
+        }
+    }
+}

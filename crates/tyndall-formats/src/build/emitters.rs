@@ -268,7 +268,7 @@ fn as_parallelogram(mesh: &Mesh) -> Option<EmitterShape> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::shapes::rectangle;
+    use crate::build::triangles::rectangle;
 
     #[test]
     fn a_rectangle_is_one_emitter_that_shines_along_z() {

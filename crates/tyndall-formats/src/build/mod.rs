@@ -12,6 +12,7 @@ mod principled;
 pub(crate) mod shapes;
 pub(crate) mod spectra;
 mod textures;
+pub(crate) mod triangles;
 
 #[cfg(test)]
 mod tests;

@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use glam::{DMat4, DVec3};
 use tyndall::{
     light::{EmitterShape, Light},
-    math::{Transform, Vec2, Vec3},
+    math::{Transform, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
-    shape::{Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, Patch, ShapeError, Sphere},
+    shape::{Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, ShapeError, Sphere},
     texture::TexturePoint,
 };
 
@@ -18,9 +18,10 @@ use super::{
     material_id, medium_id,
     painted::Painting,
     spectra::Measure,
+    triangles::{Normals, cube, finished, inline_mesh, mesh_of, patches_of, rectangle, wound_by_normals},
 };
 use crate::{
-    desc::{DisplacementDesc, FileRef, GroupDesc, MaterialKind, MeshDesc, PatchDesc, ShapeDesc, ShapeKind},
+    desc::{DisplacementDesc, FileRef, GroupDesc, MaterialKind, ShapeDesc, ShapeKind},
     error::SceneError,
     mesh::{MeshError, TriangleMesh, displace, read_obj, read_ply, read_serialized, subdivide},
 };
@@ -41,27 +42,6 @@ struct Gathered<'a> {
     objects: Vec<Object>,
     emitters: Vec<Shining<'a>>,
     painting: Painting,
-}
-
-/// The normals of a mesh from a file.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Normals {
-    /// Each face is flat.
-    Flat,
-    /// Those of the file, if it has any.
-    AsGiven,
-    /// Those of the file, or else averages over the faces at a vertex.
-    Smooth,
-}
-
-impl Normals {
-    fn asked(flat: bool, smooth: bool) -> Self {
-        match (flat, smooth) {
-            (true, _) => Self::Flat,
-            (false, true) => Self::Smooth,
-            (false, false) => Self::AsGiven,
-        }
-    }
 }
 
 impl<'a> Builder<'a> {
@@ -176,8 +156,7 @@ impl<'a> Builder<'a> {
             ShapeKind::Subdivision { positions, indices, levels } => {
                 let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();
                 match subdivide(&positions, indices, *levels) {
-                    // Its normals are against the winding.
-                    Ok(mesh) => vec![builder.add_mesh(mesh_of(mesh), &transform, !reversed)],
+                    Ok(mesh) => vec![builder.add_mesh(wound_by_normals(mesh_of(mesh)), &transform, reversed)],
                     Err(problem) => return self.fail(SceneError::at(desc.span, format!("this surface: {problem}"))),
                 }
             }
@@ -311,123 +290,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The mesh of a file with the normals and texture coordinates that are asked for.
-fn finished(mut mesh: TriangleMesh, normals: Normals, flip_tex_coords: bool) -> Mesh {
-    let smooth = (normals == Normals::Smooth && mesh.normals.is_none()).then(|| mesh.smooth_normals());
-    let mut uvs = mesh.uvs.take().unwrap_or_default();
-    if flip_tex_coords {
-        for uv in &mut uvs {
-            uv.y = 1.0 - uv.y;
-        }
-    }
-    let normals = match normals {
-        Normals::Flat => Vec::new(),
-        Normals::AsGiven | Normals::Smooth => mesh.normals.take().or(smooth).unwrap_or_default(),
-    };
-    mesh_of(TriangleMesh { normals: Some(normals), uvs: Some(uvs), ..mesh })
-}
-
-/// The triangles that a shape is made of as it stands, for whoever writes them elsewhere. `None` for what is no mesh, and for
-/// one whose vertices a texture moves.
-pub(crate) fn triangles_of(kind: &ShapeKind) -> Option<Result<Mesh, MeshError>> {
-    let file = |mesh: Result<TriangleMesh, MeshError>, flat, smooth, flip| {
-        mesh.map(|mesh| finished(mesh, Normals::asked(flat, smooth), flip))
-    };
-    Some(match kind {
-        ShapeKind::Rectangle => Ok(rectangle()),
-        ShapeKind::Cube => Ok(cube()),
-        ShapeKind::TriangleMesh(mesh) => Ok(inline_mesh(mesh)),
-        ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement: None } => {
-            file(read_ply(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
-        }
-        ShapeKind::Obj { path, face_normals, smooth_normals, flip_tex_coords } => {
-            file(read_obj(&path.value), *face_normals, *smooth_normals, *flip_tex_coords)
-        }
-        ShapeKind::Serialized { path, index, face_normals } => {
-            file(read_serialized(&path.value, *index), *face_normals, true, false)
-        }
-        ShapeKind::Subdivision { positions, indices, levels } => {
-            let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();
-            let named = |problem| MeshError { path: "this surface".into(), problem };
-            subdivide(&positions, indices, *levels).map(mesh_of).map_err(named)
-        }
-        ShapeKind::Sphere { .. }
-        | ShapeKind::Disk { .. }
-        | ShapeKind::Cylinder { .. }
-        | ShapeKind::BilinearMesh(_)
-        | ShapeKind::Ply { displacement: Some(_), .. } => return None,
-    })
-}
-
 /// The surface of several objects.
 fn surfaces(geometry: &Geometry, objects: std::ops::Range<u32>) -> Vec<EmitterShape> {
     let pieces: Vec<Pieces> = objects.map(|object| pieces(geometry, ObjectId(object))).collect();
     pieces.iter().flat_map(Pieces::shapes).copied().collect()
-}
-
-fn mesh_of(mesh: TriangleMesh) -> Mesh {
-    let TriangleMesh { positions, indices, normals, uvs, .. } = mesh;
-    let (normals, uvs) = (normals.unwrap_or_default(), uvs.unwrap_or_default());
-    Mesh { positions, indices, normals, uvs, reversed: false }
-}
-
-fn inline_mesh(mesh: &MeshDesc) -> Mesh {
-    Mesh {
-        positions: mesh.positions.iter().map(|p| Vec3::from_array(*p)).collect(),
-        indices: mesh.indices.clone(),
-        normals: mesh.normals.iter().map(|n| Vec3::from_array(*n)).collect(),
-        uvs: mesh.uvs.iter().map(|uv| Vec2::from_array(*uv)).collect(),
-        reversed: false,
-    }
-}
-
-fn patches_of(patches: &PatchDesc) -> impl Iterator<Item = Patch> {
-    patches.indices.iter().map(|corners| Patch::new(corners.map(|i| Vec3::from_array(patches.positions[i as usize]))))
-}
-
-/// The square [−1, 1]² at z = 0, seen from +z: as a flat patch with these corners.
-pub(super) fn rectangle() -> Mesh {
-    let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
-    Mesh {
-        positions: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
-        indices: vec![[0, 1, 2], [0, 2, 3]],
-        normals: Vec::new(),
-        uvs: vec![Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 1.0)],
-        reversed: false,
-    }
-}
-
-/// The cube [−1, 1]³ with shared corners, so that it is closed.
-fn cube() -> Mesh {
-    let sign = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
-    let positions = (0..8u32).map(|i| Vec3::new(sign(i & 1), sign(i & 2), sign(i & 4))).collect();
-    let indices = vec![
-        [0, 2, 1],
-        [1, 2, 3], // z = −1
-        [4, 5, 6],
-        [5, 7, 6], // z = +1
-        [0, 1, 4],
-        [1, 5, 4], // y = −1
-        [2, 6, 3],
-        [3, 6, 7], // y = +1
-        [0, 4, 2],
-        [2, 4, 6], // x = −1
-        [1, 3, 5],
-        [3, 7, 5], // x = +1
-    ];
-    Mesh { positions, indices, normals: Vec::new(), uvs: Vec::new(), reversed: false }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_face_of_the_cube_looks_outward() {
-        let cube = cube();
-        for prim in 0..12 {
-            let [a, b, c] = cube.triangle(prim);
-            assert!((b - a).cross(c - a).dot(a + b + c) > 0.0, "triangle {prim}");
-        }
-    }
 }

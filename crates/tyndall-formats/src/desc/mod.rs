@@ -95,7 +95,8 @@ pub struct SceneDesc {
     pub lights: Vec<LightDesc>,
     /// Words that were read and have no effect here, each with the reason.
     pub ignored: Vec<Ignored>,
-    /// What was left out because it is not supported yet, if the user wanted no more than warnings of it.
+    /// What means something else in the language, and what was left out because it is not supported yet, if the user wanted no
+    /// more than warnings of it.
     pub warnings: Vec<SceneError>,
 }
 

@@ -7,7 +7,7 @@ use super::object::{Object, Report};
 use super::scene::Builder;
 use super::tree::Element;
 use super::words;
-use crate::desc::{Ignored, IntegratorDesc};
+use crate::desc::{Ignored, IntegratorDesc, MaterialDesc, MaterialKind};
 use crate::error::SceneError;
 use crate::source::Spanned;
 
@@ -104,4 +104,19 @@ fn depths(object: &mut Object, report: &mut Report) -> (Option<Spanned<u32>>, Op
     // Mitsuba counts the segments of a path, the description its scatterings.
     let limit = max_depth.filter(|depth| depth.value > 0).map(|depth| depth.map(|d| d as u32 - 1));
     (limit, rr_depth)
+}
+
+/// Only the integrators of volumes let paths through open surfaces for nothing.
+pub(super) fn warn_of_open_surfaces(integrator: &IntegratorDesc, materials: &[MaterialDesc], report: &mut Report) {
+    let Some(limit) = &integrator.max_depth else { return };
+    let is_open = |of: &MaterialDesc| matches!(of.kind, MaterialKind::Interface | MaterialKind::Mask { .. });
+    if integrator.counted == Counted::Scatterings && materials.iter().any(is_open) {
+        let message = format!(
+            "Mitsuba's \"{}\" counts each surface that is passed straight (\"null\", \"mask\") for its depth, tyndall \
+             counts none: more light is found behind them here",
+            integrator.name.value
+        );
+        let warning = SceneError::warning(limit.span, message);
+        report.errors.push(warning.help("\"volpath\" counts as tyndall does; without \"max_depth\" both agree"));
+    }
 }

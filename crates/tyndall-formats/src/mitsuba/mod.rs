@@ -35,6 +35,7 @@ pub(crate) use aov::word as layer_word;
 pub(crate) use bsdf::INDICES;
 pub(crate) use camera::{NEAR_CLIP, NO_NEAR_CLIP};
 pub(crate) use emitter::facing;
+pub(crate) use texture::Answer;
 pub(crate) use transform::look_at;
 
 use std::path::Path;

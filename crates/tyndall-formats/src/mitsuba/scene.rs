@@ -146,6 +146,7 @@ impl<'t> Builder<'t> {
             None => None,
         };
         let integrator = integrator.unwrap_or_else(|| default_integrator(root.span));
+        integrator::warn_of_open_surfaces(&integrator, &self.materials, &mut self.report);
         for texture in textures {
             self.unless_built(texture.element);
         }

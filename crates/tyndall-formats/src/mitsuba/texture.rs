@@ -21,7 +21,7 @@ const MAX_DEPTH: u32 = 32;
 
 /// What a texture is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Answer {
+pub(crate) enum Answer {
     /// A colour.
     Colour,
     /// One number.

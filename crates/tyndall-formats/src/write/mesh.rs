@@ -1,6 +1,6 @@
 //! Meshes that the language cannot say in words: PLY files beside the scene.
 
-use crate::build::shapes::triangles_of;
+use crate::build::triangles::triangles_of;
 use crate::desc::{FileRef, ShapeDesc, ShapeKind};
 use crate::error::SceneError;
 use tyndall::shape::Mesh;

@@ -113,9 +113,9 @@ pub fn write(
 fn header(desc: &SceneDesc, sources: &SourceMap, warnings: &[SceneError]) -> Vec<String> {
     let source = sources.files().first().map(|file| file.path.file_name().unwrap_or_default().to_string_lossy());
     let mut lines = vec![format!("From {}, by tyndall convert.", source.unwrap_or_default())];
-    let left_out = desc.warnings.iter().map(|warning| (warning, "left out: "));
+    let read = desc.warnings.iter().map(|warning| (warning, "when it was read: "));
     let mut seen = std::collections::HashSet::new();
-    for (warning, what) in left_out.chain(warnings.iter().map(|warning| (warning, ""))) {
+    for (warning, what) in read.chain(warnings.iter().map(|warning| (warning, ""))) {
         if seen.insert(warning.message.clone()) {
             let place = warning.span.map(|span| format!(" ({})", sources.place(span))).unwrap_or_default();
             lines.push(format!("{what}{}{place}", warning.message));

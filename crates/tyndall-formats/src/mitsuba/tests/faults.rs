@@ -308,3 +308,19 @@ fn a_batch_has_sensors_that_share_its_film() {
     let five = "<sensor type=\"perspective\"/>".repeat(5);
     assert!(faults(&five).contains("5 sensors do not divide 768 columns"));
 }
+
+/// Mitsuba's `path` counts the surfaces that it passes straight, its `volpath` and tyndall do not.
+#[test]
+fn a_depth_for_which_open_surfaces_count_is_told() {
+    let told = |integrator: &str, depth: i32, bsdf: &str| {
+        let words = format!(
+            "<integrator type=\"{integrator}\"><integer name=\"max_depth\" value=\"{depth}\"/></integrator>\
+             <shape type=\"sphere\">{bsdf}</shape>"
+        );
+        parsed(&scene(&words)).warnings.iter().filter(|w| w.message.contains("passed straight")).count()
+    };
+    let null = "<bsdf type=\"null\"/>";
+    let mask = "<bsdf type=\"mask\"><bsdf type=\"diffuse\"/></bsdf>";
+    assert_eq!([told("path", 5, null), told("path", 5, mask), told("prb", 5, null)], [1, 1, 1]);
+    assert_eq!([told("path", -1, null), told("volpath", 5, null), told("path", 5, "")], [0, 0, 0]);
+}

@@ -152,7 +152,7 @@ impl Pen<'_, '_> {
             MaterialKind::Interface => Element::plugin("bsdf", "null"),
             MaterialKind::Mix { of: [first, second], amount } => {
                 let mut element = Element::plugin("bsdf", "blendbsdf");
-                let weight = self.varying("weight", amount);
+                let weight = self.varying_number("weight", amount);
                 element.push(weight.unwrap_or_else(|| Element::parameter("float", "weight", "0.5")));
                 element.push(self.material_ref(first.value));
                 element.push(self.material_ref(second.value));
@@ -160,7 +160,7 @@ impl Pen<'_, '_> {
             }
             MaterialKind::Mask { of, opacity } => {
                 let mut element = Element::plugin("bsdf", "mask");
-                self.varying_unless(&mut element, "opacity", opacity, 0.5);
+                self.number_unless(&mut element, "opacity", opacity, 0.5);
                 element.around(self.material_ref(of.value))
             }
             MaterialKind::TwoFaced { of: [front, back] } => {
@@ -177,9 +177,9 @@ impl Pen<'_, '_> {
         let PrincipledDesc { burley, metallic, clearcoat, clearcoat_gloss, eta, rates } = desc;
         let mut element = Element::plugin("bsdf", "principled");
         self.burley(&mut element, burley);
-        self.varying_unless(&mut element, "metallic", metallic, 0.0);
-        self.varying_unless(&mut element, "clearcoat", clearcoat, 0.0);
-        self.varying_unless(&mut element, "clearcoat_gloss", clearcoat_gloss, 0.0);
+        self.number_unless(&mut element, "metallic", metallic, 0.0);
+        self.number_unless(&mut element, "clearcoat", clearcoat, 0.0);
+        self.number_unless(&mut element, "clearcoat_gloss", clearcoat_gloss, 0.0);
         element.push(Element::parameter("float", "eta", &double(*eta)));
         let names = ["diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"];
         for (name, rate) in names.into_iter().zip(rates) {
@@ -192,8 +192,8 @@ impl Pen<'_, '_> {
         let PrincipledThinDesc { burley, eta, diff_trans, rates } = desc;
         let mut element = Element::plugin("bsdf", "principledthin");
         self.burley(&mut element, burley);
-        self.varying_unless(&mut element, "eta", eta, 1.5);
-        self.varying_unless(&mut element, "diff_trans", diff_trans, 0.0);
+        self.number_unless(&mut element, "eta", eta, 1.5);
+        self.number_unless(&mut element, "diff_trans", diff_trans, 0.0);
         for (side, rates) in ["reflectance", "transmittance"].into_iter().zip(rates) {
             for (lobe, rate) in ["diffuse", "specular"].into_iter().zip(rates) {
                 element.float_unless(&format!("{lobe}_{side}_sampling_rate"), *rate, 1.0);
@@ -207,7 +207,7 @@ impl Pen<'_, '_> {
         let BurleyDesc { base_color, roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness } =
             desc;
         self.varying_unless(element, "base_color", base_color, 0.5);
-        self.varying_unless(element, "roughness", roughness, 0.5);
+        self.number_unless(element, "roughness", roughness, 0.5);
         let none_unless_said = [
             ("anisotropic", anisotropic),
             ("spec_trans", spec_trans),
@@ -217,7 +217,7 @@ impl Pen<'_, '_> {
             ("flatness", flatness),
         ];
         for (name, value) in none_unless_said {
-            self.varying_unless(element, name, value, 0.0);
+            self.number_unless(element, name, value, 0.0);
         }
     }
 
@@ -226,7 +226,7 @@ impl Pen<'_, '_> {
             ReliefMap::Heights { texture, scale } => {
                 let mut element = Element::plugin("bsdf", "bumpmap");
                 element.float_unless("scale", *scale, 1.0);
-                (element, self.varying("arbitrary", texture))
+                (element, self.varying_number("arbitrary", texture))
             }
             ReliefMap::Normals(texture) => (Element::plugin("bsdf", "normalmap"), self.varying("normalmap", texture)),
         };
@@ -301,10 +301,10 @@ impl Pen<'_, '_> {
         }
         let [alpha_u, alpha_v] = [u, v].map(|r| self.alpha(r, *remap));
         if alpha_u.value == alpha_v.value {
-            self.varying_unless(element, "alpha", &alpha_u, 0.1);
+            self.number_unless(element, "alpha", &alpha_u, 0.1);
         } else {
-            element.extend(self.varying("alpha_u", &alpha_u));
-            element.extend(self.varying("alpha_v", &alpha_v));
+            element.extend(self.varying_number("alpha_u", &alpha_u));
+            element.extend(self.varying_number("alpha_v", &alpha_v));
         }
     }
 

@@ -18,7 +18,7 @@ use super::Draft;
 use super::names::{Names, printable};
 use super::place::{Look, Place, width};
 use crate::desc::{MaterialId, MediumId, Span, TextureId};
-use crate::mitsuba::look_at;
+use crate::mitsuba::{Answer, look_at};
 use element::Element;
 
 /// Lines of comment, in front of the scene.
@@ -61,8 +61,8 @@ struct Pen<'a, 'b> {
     materials: Vec<String>,
     textures: Vec<String>,
     groups: Vec<String>,
-    /// Textures that stand somewhere already: they are referred to from then on.
-    textures_written: Vec<TextureId>,
+    /// Textures that stand somewhere already, by their names: they are referred to from then on.
+    textures_written: Vec<(TextureId, Answer, String)>,
 }
 
 impl Pen<'_, '_> {

@@ -8,7 +8,7 @@ use super::Pen;
 use super::element::Element;
 use super::emitter::point;
 use super::placed;
-use crate::build::shapes::triangles_of;
+use crate::build::triangles::triangles_of;
 use crate::desc::{FileRef, MediumInterface, PatchDesc, ShapeDesc, ShapeKind};
 use crate::write::mesh::has_normals;
 use crate::write::place::Place;
@@ -58,8 +58,7 @@ impl Pen<'_, '_> {
             let name = self.names.unique(Some(name), "shape");
             element = element.with("id", &name);
         }
-        // The normals of a subdivided mesh are against the winding.
-        if shape.reverse_orientation != matches!(shape.kind, ShapeKind::Subdivision { .. }) {
+        if shape.reverse_orientation {
             element.boolean("flip_normals", true);
         }
         if let Some(priority) = shape.priority {
@@ -76,7 +75,7 @@ impl Pen<'_, '_> {
                     self.lacks(opacity.span, "holes in a boundary of media");
                 }
                 let mut mask = Element::plugin("bsdf", "mask");
-                self.varying_unless(&mut mask, "opacity", opacity, 0.5);
+                self.number_unless(&mut mask, "opacity", opacity, 0.5);
                 element.push(mask.around(material));
             }
         }

@@ -4,6 +4,7 @@ use super::Pen;
 use super::element::Element;
 use crate::build::spectra::{named_samples, table_luminance};
 use crate::desc::{EmissionDesc, Magnitude, Span, Spanned, SpectrumDesc, TextureKind, Varying};
+use crate::mitsuba::Answer;
 use crate::write::number::{as_single, double};
 
 impl Pen<'_, '_> {
@@ -25,16 +26,26 @@ impl Pen<'_, '_> {
         None
     }
 
-    /// A number, a colour, or a texture.
+    /// A number, a colour, or a texture, where a colour is asked for.
     pub(super) fn varying(&mut self, name: &str, value: &Spanned<Varying>) -> Option<Element> {
+        self.answering(name, value, Answer::Colour)
+    }
+
+    /// The same where one number is asked for.
+    pub(super) fn varying_number(&mut self, name: &str, value: &Spanned<Varying>) -> Option<Element> {
+        self.answering(name, value, Answer::Number)
+    }
+
+    /// The same for what is asked for.
+    pub(super) fn answering(&mut self, name: &str, value: &Spanned<Varying>, answer: Answer) -> Option<Element> {
         match &value.value {
             Varying::Everywhere(spectrum) => self.spectrum(name, spectrum, value.span),
             Varying::Texture(id) => {
                 // A texture that is the same everywhere is its value.
                 if let Some(TextureKind::Plain(inner)) = self.draft.desc.texture(*id).map(|t| &t.kind) {
-                    return self.varying(name, inner);
+                    return self.answering(name, inner, answer);
                 }
-                self.texture(name, *id)
+                self.texture(name, *id, answer)
             }
         }
     }
@@ -43,6 +54,13 @@ impl Pen<'_, '_> {
     pub(super) fn varying_unless(&mut self, element: &mut Element, name: &str, value: &Spanned<Varying>, default: f64) {
         if value.value.number() != Some(default) {
             element.extend(self.varying(name, value));
+        }
+    }
+
+    /// As [`Self::varying_number`], unless it is the number that Mitsuba takes anyway.
+    pub(super) fn number_unless(&mut self, element: &mut Element, name: &str, value: &Spanned<Varying>, default: f64) {
+        if value.value.number() != Some(default) {
+            element.extend(self.varying_number(name, value));
         }
     }
 

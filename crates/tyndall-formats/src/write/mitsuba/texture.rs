@@ -1,39 +1,50 @@
 //! Textures: pictures and checkerboards of squares.
+//!
+//! Mitsuba's checkerboard has its colours the other way round where it is asked for one number: it is written for what it is
+//! asked for, twice where it is asked for both.
 
 use super::Pen;
 use super::element::Element;
 use super::matrix;
 use crate::desc::{Board, Encoding, ImageDesc, MappingDesc, Span, Spanned, TextureId, TextureKind, Varying, WrapKind};
+use crate::mitsuba::Answer;
 
 impl Pen<'_, '_> {
     /// A texture where it is used first, and a reference where it is used again.
-    pub(super) fn texture(&mut self, name: &str, id: TextureId) -> Option<Element> {
+    pub(super) fn texture(&mut self, name: &str, id: TextureId, answer: Answer) -> Option<Element> {
         let desc = self.draft.desc;
         let texture = desc.texture(id)?;
-        let own_name = self.textures.get(id.0 as usize)?.clone();
-        if self.textures_written.contains(&id) {
-            return Some(Element::new("ref").with("name", name).with("id", &own_name));
+        // Only a checkerboard answers both ways.
+        let answer = if matches!(texture.kind, TextureKind::Checkerboard { .. }) { answer } else { Answer::Colour };
+        let mut own_name = self.textures.get(id.0 as usize)?.clone();
+        for (written, asked, id_there) in &self.textures_written {
+            if (*written, *asked) == (id, answer) {
+                return Some(Element::new("ref").with("name", name).with("id", id_there));
+            }
+        }
+        if self.textures_written.iter().any(|(written, ..)| *written == id) {
+            own_name = self.names.unique(Some(&own_name), "texture");
         }
         let what = match &texture.kind {
             TextureKind::Image(image) => {
                 let element = Element::plugin("texture", "bitmap").with("name", name).with("id", &own_name);
-                self.textures_written.push(id);
+                self.textures_written.push((id, answer, own_name));
                 return Some(self.bitmap(element, image, texture.span));
             }
             TextureKind::Checkerboard { of, board: Board::Squares(mapping) } => {
                 let element = Element::plugin("texture", "checkerboard").with("name", name).with("id", &own_name);
-                self.textures_written.push(id);
-                return Some(self.checkerboard(element, of, mapping, texture.span));
+                self.textures_written.push((id, answer, own_name));
+                return Some(self.checkerboard(element, of, mapping, answer, texture.span));
             }
             TextureKind::Checkerboard { board: Board::Cubes { .. }, .. } => "a checkerboard of cubes",
             TextureKind::Attribute { of_faces, scale } => {
                 let mut element = Element::plugin("texture", "mesh_attribute").with("name", name).with("id", &own_name);
                 element.string("name", if *of_faces { "face_color" } else { "vertex_color" });
                 element.float_unless("scale", *scale, 1.0);
-                self.textures_written.push(id);
+                self.textures_written.push((id, answer, own_name));
                 return Some(element);
             }
-            TextureKind::Plain(inner) => return self.varying(name, inner),
+            TextureKind::Plain(inner) => return self.answering(name, inner, answer),
             TextureKind::Scale(_) => "the texture \"scale\"",
             TextureKind::Mix { .. } => "the texture \"mix\"",
             TextureKind::DirectionMix { .. } => "the texture \"directionmix\"",
@@ -53,10 +64,16 @@ impl Pen<'_, '_> {
         mut element: Element,
         of: &[Spanned<Varying>; 2],
         mapping: &MappingDesc,
+        answer: Answer,
         span: Span,
     ) -> Element {
-        self.varying_unless(&mut element, "color0", &of[0], 0.4);
-        self.varying_unless(&mut element, "color1", &of[1], 0.2);
+        let [first, second] = of;
+        let colours = if answer == Answer::Number { [second, first] } else { [first, second] };
+        for ((name, default), value) in [("color0", 0.4), ("color1", 0.2)].into_iter().zip(colours) {
+            if value.value.number() != Some(default) {
+                element.extend(self.answering(name, value, answer));
+            }
+        }
         // Its fields are half a unit wide.
         if let Some([s, t]) = self.uv_rows(mapping, span) {
             element.extend(to_uv([s.map(|v| 0.5 * v), t.map(|v| 0.5 * v)]));

@@ -5,7 +5,7 @@ use tyndall::shape::{DiskMapping, Turn};
 
 use super::Pen;
 use super::entity::{Entity, quoted};
-use crate::build::shapes::triangles_of;
+use crate::build::triangles::triangles_of;
 use crate::desc::{MaterialKind, PatchDesc, ShapeDesc, ShapeKind};
 use crate::write::mesh::has_normals;
 use crate::write::names::{Names, printable};
