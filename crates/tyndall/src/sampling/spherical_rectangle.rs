@@ -16,6 +16,9 @@ use crate::math::{Vec2, Vec3};
 /// Below this solid angle [sr] its relative error would exceed 10⁻⁶, and sampling by area is as good.
 pub const MIN_SOLID_ANGLE: f64 = 1e-9;
 
+/// Between edges up to this cosine the corner is right.
+const MAX_COSINE: f64 = 1e-5;
+
 /// A rectangle as seen from a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SphericalRectangle {
@@ -32,13 +35,16 @@ pub struct SphericalRectangle {
 }
 
 impl SphericalRectangle {
-    /// The rectangle `corner + u·ex + v·ey` seen from `from`; `ex` and `ey` are perpendicular.
+    /// The rectangle `corner + u·ex + v·ey` seen from `from`.
     ///
-    /// `None` when the solid angle is below [`MIN_SOLID_ANGLE`] or not finite (a degenerate rectangle, or one seen edge
+    /// `None` when `ex` and `ey` are not perpendicular, when the solid angle is below [`MIN_SOLID_ANGLE`] or not finite (a degenerate rectangle, or one seen edge
     /// on): the caller then samples by area, and must take the density of that for MIS too.
     pub fn new(corner: Vec3, ex: Vec3, ey: Vec3, from: Vec3) -> Option<Self> {
         let (ex, ey) = (ex.as_dvec3(), ey.as_dvec3());
         let (width, height) = (ex.length(), ey.length());
+        if ex.dot(ey).abs() > MAX_COSINE * (width * height) {
+            return None;
+        }
         let d = corner.as_dvec3() - from.as_dvec3();
         let z = -d.dot(ex.cross(ey) / (width * height)).abs();
         let (x0, y0) = (d.dot(ex) / width, d.dot(ey) / height);
@@ -85,18 +91,19 @@ impl SphericalRectangle {
         let y = if self.y[0].abs() < self.y[1].abs() { [-self.y[1], -self.y[0]] } else { self.y };
         let DVec2 { x: cos, y: sin } = DVec2::from_angle(u * self.omega).rotate(self.start) / self.start.length();
         let length = [(y[0] * y[0] + z * z).sqrt(), (y[1] * y[1] + z * z).sqrt()];
-        let (b0, b1) = (-y[0] / length[0], y[1] / length[1]);
-        let below = |i: usize| z * z / (length[i] * (length[i] + y[i].abs()));
-        let below_one = [below(0), below(1)];
+        let inverse = [1.0 / length[0], 1.0 / length[1]];
+        let (b0, b1) = (-y[0] * inverse[0], y[1] * inverse[1]);
+        let below_one = |i: usize| z * z * inverse[i] / (length[i] + y[i].abs());
+        let below_one = [below_one(0), below_one(1)];
         let cos_below_one = sin * sin / (1.0 + cos.abs());
         let difference = if cos * b0 * b1 > 0.0 {
             (below_one[1] - below_one[0] - cos_below_one * (1.0 - below_one[0])) * b1.signum()
         } else {
             cos * b0 - b1
         };
-        let f = difference / sin;
-        let x_over_z = (f * f - (z / length[0]).powi(2)).max(0.0).sqrt().recip();
-        (x_over_z * z.abs().copysign(f)).clamp(x[0], x[1])
+        // With both halves of the fraction multiplied by sin φ.
+        let below = (difference * difference - (sin * z * inverse[0]).powi(2)).max(0.0).sqrt();
+        (z * sin / below).copysign(difference * sin).clamp(x[0], x[1])
     }
 
     /// The density of the direction to a sampled point [1/sr].
