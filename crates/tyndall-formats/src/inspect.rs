@@ -155,7 +155,18 @@ fn open_bodies(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneError>) 
         let objects: Vec<_> = (first..first + count).map(ObjectId).collect();
         first += count;
         let bounds = shape.priority.is_some() || shape.interface.is_some_and(|i| i.inside != i.outside);
-        if !bounds || scene.geometry.is_closed(&objects) {
+        if !bounds {
+            continue;
+        }
+        if scene.geometry.is_closed(&objects) {
+            if let [object] = objects[..]
+                && scene.geometry.faces_inward(object)
+            {
+                warnings.push(
+                    SceneError::warning(shape.span, "the normals of this surface point to its inside".to_owned())
+                        .help("its interior medium is all around it then; turn it round if that is not meant"),
+                );
+            }
             continue;
         }
         let Seams { edges, open } = scene.geometry.seams(&objects);
@@ -231,6 +242,13 @@ mod tests {
     }
 
     /// Two triangles have six edges, of which they share one; a disk is all edge; a sphere has none.
+    #[test]
+    fn a_body_that_is_inside_out_is_told() {
+        let told = warned(&format!("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" ReverseOrientation {BALL}"));
+        assert!(told.contains("the normals of this surface point to its inside"), "{told}");
+        assert!(!warned(&format!("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" {BALL}")).contains("normals"));
+    }
+
     #[test]
     fn an_open_surface_with_a_medium_behind_it_is_told() {
         let shape = |words: &str| {

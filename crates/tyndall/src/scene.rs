@@ -221,16 +221,15 @@ fn can_be_lit(
     let touches = |o: &Object| o.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium));
     let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], materials);
     let mut body = Bounds::EMPTY;
-    for (index, object) in objects.iter().enumerate() {
+    for (index, object) in objects.iter().enumerate().filter(|(_, object)| touches(object)) {
+        let id = crate::shape::ObjectId(index as u32);
         // On the outside of a body the medium reaches as far as its other boundaries, which may be nowhere.
-        let surrounds = object.interface.is_some_and(|i| i.outside == Some(medium));
-        let placed = geometry.is_in_group(crate::shape::ObjectId(index as u32));
-        if touches(object) && (is_open(object) || surrounds || placed) {
+        let surrounds = object.interface.is_some_and(|i| i.outside == Some(medium)) || geometry.faces_inward(id);
+        let placed = geometry.is_in_group(id);
+        if is_open(object) || surrounds || placed {
             return true;
         }
-        if touches(object) {
-            body = body.union(geometry.object_bounds(crate::shape::ObjectId(index as u32)));
-        }
+        body = body.union(geometry.object_bounds(id));
     }
     body.is_empty() || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(&body, &b))
 }
@@ -248,7 +247,8 @@ fn opens_straight(medium: MediumId, bodies: &[Body]) -> bool {
     !bends && bodies.iter().any(|body| body.medium == Some(medium))
 }
 
-/// All of space, unless every surface that knows the medium has it inside, is closed, and stands in the world itself.
+/// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
+/// in the world itself.
 fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Object], bodies: &[Body]) -> Bounds {
     let mut extent = Bounds::EMPTY;
     for (index, object) in objects.iter().enumerate() {
@@ -262,7 +262,7 @@ fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Obj
             return Bounds::EVERYTHING;
         }
         if interface.inside == Some(medium) {
-            if geometry.is_in_group(id) || !is_closed() {
+            if geometry.is_in_group(id) || !is_closed() || geometry.faces_inward(id) {
                 return Bounds::EVERYTHING;
             }
             extent = extent.union(geometry.object_bounds(id));

@@ -530,3 +530,30 @@ fn balls_of_any_depth_and_any_size_vanish_and_shine() {
         }
     }
 }
+
+/// A box whose normals point inwards has its medium around it: of the way up to a lamp at height 4 the 3 above the box
+/// absorb, `L exp(−3σ)`. Behind glass too light samples reach its lamps,
+/// and what paths run into counts in full: as the naive twin has it.
+#[test]
+fn a_body_that_is_inside_out_has_its_medium_around_it() {
+    let seen = |inside| {
+        let mut world = World::seen(Vec3::new(0.0, -5.0, 0.0), Vec3::new(0.0, 4.0, 1e-3));
+        // Mirrored in y.
+        world.cuboid(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, -1.0, 1.0), Material::Null, Some(inside));
+        world
+    };
+    let mut lamp = seen(absorber(1.0));
+    lamp.shining_disk(4.0, 1.0, diffuse(0.0), 2.0);
+    let expected = DEPTHS.map(|s| 2.0 * f64::from(-3.0 * s).exp());
+    assert_mean("lamp", &lamp.measure(&VolPath::default(), 20_000), expected, 0.02);
+    let room = || {
+        let mut world = World::seen(Vec3::new(0.0, -1.5, 0.0), Vec3::new(0.0, 4.0, 1e-3));
+        let fog = medium([0.2; 3], [0.5; 3], 0.0);
+        world.cuboid(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, -1.0, 1.0), glass(1.0, 0.1), Some(fog));
+        world.shining_disk(3.0, 3.0, diffuse(0.0), 2.0);
+        world
+    };
+    let [volpath, analog] = [&VolPath::default() as &dyn Integrator, &Analog].map(|by| room().measure(by, 200_000));
+    let z = (volpath.mean[0] - analog.mean[0]) / volpath.standard_error[0].hypot(analog.standard_error[0]);
+    assert!(z.abs() < 4.5 && analog.standard_error[0] < 0.01, "{volpath:?} {analog:?}");
+}

@@ -72,7 +72,7 @@ fn follow(tyndall: &Tyndall, case: &Case) -> Result<Run> {
 }
 
 /// Compiled as DESIGN says: for this processor.
-fn compile_bare_walk() -> Result<std::path::PathBuf> {
+pub(super) fn compile_bare_walk() -> Result<std::path::PathBuf> {
     let program = root().join("target/bench/bare_walk");
     let source = root().join("xtask/bare_walk.rs");
     output(
@@ -85,7 +85,7 @@ fn compile_bare_walk() -> Result<std::path::PathBuf> {
 }
 
 /// Nanoseconds a collision, one by one and in lanes.
-fn bare_times(program: &std::path::Path) -> Result<[f64; 2]> {
+pub(super) fn bare_times(program: &std::path::Path) -> Result<[f64; 2]> {
     let text = output(&mut Command::new(program))?;
     let mut numbers = text.split_whitespace().map(str::parse);
     let mut next = || numbers.next().context("the bare loop tells two numbers")?.context("the bare loop tells numbers");

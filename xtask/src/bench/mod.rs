@@ -1,5 +1,6 @@
 //! `cargo xtask bench`: the figures that tyndall promises, measured on this machine, peers in the same minutes.
 
+mod dense;
 mod lab;
 mod lights;
 mod mesh;
@@ -38,6 +39,8 @@ pub(crate) enum Bench {
     Threads,
     /// Error times time of 10,000 emissive triangles beside that of ten (at most 2 times)
     Lights,
+    /// Efficiency in dense media against both backends of Mitsuba, and ns a collision beside the bare loop
+    Dense,
     /// Photons a second and ns a collision of `tyndall lab`, beside a bare loop that only collides
     Lab,
     /// Reading and building a mesh of ten million triangles (under 15 s and 4 GiB)
@@ -56,6 +59,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         Bench::Rays,
         Bench::Scenes,
         Bench::Lights,
+        Bench::Dense,
         Bench::Lab,
         Bench::Mesh,
         Bench::Roulette,
@@ -71,6 +75,7 @@ fn run_one(bench: Bench, quick: bool) -> Result<()> {
         Bench::Rays => rays::run(),
         Bench::Scenes => scenes::run(&Tyndall::find()?, if quick { 2 } else { 5 }),
         Bench::Lights => lights::run(&Tyndall::find()?, if quick { 2 } else { 5 }),
+        Bench::Dense => dense::run(&Tyndall::find()?, if quick { 2 } else { 5 }),
         Bench::Mesh => mesh::run(&Tyndall::find()?, if quick { 1 } else { 3 }),
         Bench::Startup => startup::run(&Tyndall::find()?, if quick { 5 } else { 20 }),
         Bench::Threads => threads::run(&Tyndall::find()?, if quick { 2 } else { 5 }),

@@ -65,13 +65,14 @@ fn cells(image: &Image, is_clipped: bool) -> Vec<[f64; 3]> {
     sums.into_iter().map(|(sum, count)| sum.map(|sum| sum / f64::max(count, 1.0))).collect()
 }
 
-/// Pearson's; 1 where both are constant.
+/// Pearson's; 1 where both are constant, 0 where a picture is not finite.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (mean_a, mean_b) = (mean(a), mean(b));
     let sum = |of: &dyn Fn(f64, f64) -> f64| a.iter().zip(b).map(|(x, y)| of(x - mean_a, y - mean_b)).sum::<f64>();
     let (xy, xx, yy) = (sum(&|x, y| x * y), sum(&|x, _| x * x), sum(&|_, y| y * y));
-    if xx == 0.0 && yy == 0.0 { 1.0 } else { xy / (xx * yy).sqrt() }
+    let found = if xx == 0.0 && yy == 0.0 { 1.0 } else { xy / (xx * yy).sqrt() };
+    if found.is_finite() { found } else { 0.0 }
 }
 
 #[cfg(test)]

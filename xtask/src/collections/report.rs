@@ -12,6 +12,9 @@ use super::ours::Failure;
 use super::published::Likeness;
 use super::sources::{Language, Source};
 
+/// Why scenes come out otherwise than they should, by their files: what was found out about each.
+const REASONS: &str = include_str!("reasons.tsv");
+
 /// What came of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Outcome {
@@ -47,6 +50,15 @@ impl Row {
     /// Whether all that is missing is words that are not known yet.
     pub(crate) fn is_not_yet(&self) -> bool {
         matches!(self.outcome, Outcome::Failed { failure: Failure::NotYet(_), .. })
+    }
+
+    /// What was found out about a scene that comes out otherwise than it should.
+    fn reason(&self) -> Option<&'static str> {
+        let file = self.source.file.to_string_lossy();
+        REASONS
+            .lines()
+            .filter_map(|line| line.split_once('\t'))
+            .find_map(|(part, why)| file.contains(part).then_some(why))
     }
 
     /// In one word, and in a sentence.
@@ -121,7 +133,10 @@ pub(crate) fn page(rows: &[Row], level: f64) -> String {
             rows.len()
         );
         for row in rows {
-            let (word, remark) = row.told(level);
+            let (word, mut remark) = row.told(level);
+            if let Some(reason) = row.reason().filter(|_| word.contains("**")) {
+                let _ = write!(remark, ". {reason}");
+            }
             let seconds = |value: Option<f64>| value.map_or("–".to_owned(), crate::peers::report::figure);
             let _ = writeln!(
                 text,

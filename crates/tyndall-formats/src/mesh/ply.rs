@@ -2,8 +2,8 @@
 //!
 //! Read are the vertex properties `x y z`, `nx ny nz`, and texture coordinates under any of the names that programs
 //! write (`u v`, `s t`, `texture_u texture_v`, `texture_s texture_t`), in any order and of any number type; the face lists
-//! `vertex_indices` or `vertex_index`, whose polygons become fans of triangles; and colours of vertices and of faces, `r g b`
-//! or `red green blue`, as the numbers that they are. All else is stepped over.
+//! `vertex_indices` or `vertex_index`, whose polygons become fans of triangles; and colours of vertices and of faces, `r g b`,
+//! `red green blue` or `color_0 color_1 color_2`, as the numbers that they are. All else is stepped over.
 
 use std::fmt::{self, Formatter};
 use std::io::{self, Write};
@@ -179,9 +179,9 @@ impl Column {
             ("vertex", "nz") => Self::Number(5),
             ("vertex", "u" | "s" | "texture_u" | "texture_s") => Self::Number(6),
             ("vertex", "v" | "t" | "texture_v" | "texture_t") => Self::Number(7),
-            ("vertex" | "face", "r" | "red") => Self::Number(8),
-            ("vertex" | "face", "g" | "green") => Self::Number(9),
-            ("vertex" | "face", "b" | "blue") => Self::Number(10),
+            ("vertex" | "face", "r" | "red" | "color_0") => Self::Number(8),
+            ("vertex" | "face", "g" | "green" | "color_1") => Self::Number(9),
+            ("vertex" | "face", "b" | "blue" | "color_2") => Self::Number(10),
             ("face", "vertex_indices" | "vertex_index") => Self::Corners,
             _ => Self::Other,
         }

@@ -190,7 +190,7 @@ proptest! {
 fn colours_of_vertices_and_faces_are_read() {
     let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
         property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
-        property list uchar int vertex_indices\nproperty float r\nproperty float g\nproperty float b\nend_header\n\
+        property list uchar int vertex_indices\nproperty float color_0\nproperty float color_1\nproperty float color_2\nend_header\n\
         0 0 0 1 2 3\n1 0 0 4 5 6\n1 1 0 7 8 9\n0 1 0 255 0 1\n4 0 1 2 3 0.5 0.25 1\n3 0 1 2 0 1 0\n";
     let header = text.replace("ascii", "binary_little_endian");
     let mut bytes = header.as_bytes()[..header.find("end_header\n").unwrap() + 11].to_vec();

@@ -3,6 +3,7 @@
 //! Corners are the same if their coordinates are: meshes repeat vertices where normals or texture coordinates jump.
 //! Faces that have shrunk to a line count for nothing.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{Geometry, Mesh, ObjectId, Patch, Shape};
@@ -48,6 +49,22 @@ impl Geometry {
         });
         let total = sums.reduce(|a, b| Some(a?.wrapping_add(b?)));
         total.is_none_or(|total| total == Some(0))
+    }
+
+    /// Whether the normals of a closed surface point to its inside: by the volume that they enclose, which is then negative.
+    pub fn faces_inward(&self, object: ObjectId) -> bool {
+        match self.shape(object) {
+            Shape::Sphere(sphere) => sphere.reversed,
+            Shape::Disk(_) | Shape::Cylinder(_) | Shape::Patch(_) => false,
+            Shape::Mesh(mesh) => {
+                let about = mesh.positions.first().map_or(DVec3::ZERO, |p| p.as_dvec3());
+                let volume = (0..mesh.indices.len() as u32).map(|prim| {
+                    let [a, b, c] = mesh.triangle(prim).map(|p| p.as_dvec3() - about);
+                    a.dot(b.cross(c))
+                });
+                (volume.sum::<f64>() < 0.0) != mesh.reversed
+            }
+        }
     }
 
     /// Calls `visit` for every edge that has corners; returns the number of those that have none, and are open.
