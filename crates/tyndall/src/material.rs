@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::{
     bsdf::{
-        Bsdf, Plastic, RoughCoat, RoughPlastic, Sides, index_of_reflectance,
+        Bsdf, Diffuse, Plastic, RoughCoat, RoughPlastic, Sides, index_of_reflectance,
         measured::{Measured, Tables},
         microfacet::{Distribution, Shadowing},
     },
@@ -225,7 +225,9 @@ impl Material {
     #[inline]
     pub fn bsdf(&self, at: &TexturePoint, wavelengths: &Wavelengths, hero: usize) -> Bsdf<'_> {
         match self {
-            Self::Diffuse { reflectance, sides } => Bsdf::diffuse(share(reflectance, at, wavelengths)).on(*sides),
+            Self::Diffuse { reflectance, sides } => {
+                Bsdf::Diffuse(Diffuse { reflectance: share(reflectance, at, wavelengths), sides: *sides })
+            }
             Self::Conductor { metal, alpha, tint, sides } => {
                 let [x, y] = alpha.at(at);
                 let [eta, k] = metal.index(at, wavelengths);

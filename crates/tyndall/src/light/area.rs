@@ -304,7 +304,7 @@ impl AreaLight {
                     return sample_cone(centre, radius, to_centre, d2, cos_max, u);
                 }
             }
-            EmitterShape::Parallelogram { a, e1, e2, ng } if is_rectangle(e1, e2) => {
+            EmitterShape::Parallelogram { a, e1, e2, ng } => {
                 if let Some(rectangle) = SphericalRectangle::new(a, e1, e2, from.p) {
                     let uv = rectangle.sample(u);
                     return (flat(a, e1 * uv.x, e2 * uv.y, ng), rectangle.pdf());
@@ -326,7 +326,7 @@ impl AreaLight {
                     return warp::uniform_cone_pdf(cos_max);
                 }
             }
-            EmitterShape::Parallelogram { a, e1, e2, .. } if is_rectangle(e1, e2) => {
+            EmitterShape::Parallelogram { a, e1, e2, .. } => {
                 if let Some(rectangle) = SphericalRectangle::new(a, e1, e2, from.p) {
                     return rectangle.pdf();
                 }
@@ -373,10 +373,6 @@ fn sample_cone(centre: Vec3, radius: f32, to_centre: Vec3, d2: f32, cos_max: f32
     let frame = Frame::around(-to_centre / d2.sqrt());
     let n = frame.to_world(Vec3::new(sin_alpha * cos_phi, sin_alpha * sin_phi, cos_alpha));
     (sphere_point(centre, radius, n, false), 1.0 / (2.0 * PI * one_minus_cos_max))
-}
-
-fn is_rectangle(e1: Vec3, e2: Vec3) -> bool {
-    e1.dot(e2).abs() <= 1e-5 * (e1.length() * e2.length())
 }
 
 /// A density by area [1/length²], by solid angle [1/sr].

@@ -116,7 +116,7 @@ impl Point {
     pub(super) fn round(&self, object: ObjectId, prim: u32, instance: u32) -> Interaction {
         let p = self.p.as_vec3();
         let ng = self.ng.normalize_or_zero().as_vec3();
-        let ns = self.ns.try_normalize().map_or(ng, DVec3::as_vec3);
+        let ns = if self.ns == self.ng { ng } else { self.ns.try_normalize().map_or(ng, DVec3::as_vec3) };
         let ns = if ns.dot(ng) < 0.0 { -ns } else { ns };
         let error = p.abs() * gamma(1) + Vec3::splat((self.error as f32).next_up());
         Interaction { p, error, ng, ns, uv: self.uv, dpdu: self.dpdu.as_vec3(), object, prim, instance }

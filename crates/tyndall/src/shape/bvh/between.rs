@@ -27,7 +27,7 @@ pub(in crate::shape) fn between(
                 let shear = Shear::new(ray);
                 for packet in &tree.packets[first..first + count] {
                     for (lane, id) in packet.ids.iter().enumerate() {
-                        let Some(hit) = shear.resolve(&packet.triangle(lane)) else { continue };
+                        let Some(hit) = shear.resolve(packet, lane) else { continue };
                         if hit.t > 0.0 && hit.t < f64::from(t_max) {
                             triangle((hit.t as f32, id.object, id.prim, hit.uv));
                         }

@@ -130,6 +130,7 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
 ) {
     let Some(mut child) = tree.root else { return };
     let slabs = Slabs::new(ray);
+    let mut shear = None;
     let mut stack = Stack::new();
     loop {
         match child.content() {
@@ -143,8 +144,11 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
                 }
             }
             Content::Packets { first, count } => {
-                // Made here and not before: short flights meet no triangle, long ones one or two leaves.
-                let shear = Shear::new(ray);
+                // Made here and not before: short flights meet no triangle.
+                let shear = match shear {
+                    Some(shear) => shear,
+                    None => *shear.insert(Shear::new(ray)),
+                };
                 for packet in first..first + count {
                     test_packet(simd, tree, packet, &shear, nearest);
                 }
@@ -226,7 +230,7 @@ fn test_packet<S: Simd>(simd: S, tree: &Tree, packet: usize, shear: &Shear, near
     while mask != 0 {
         let lane = (mask.trailing_zeros() & 7) as usize;
         mask &= mask - 1;
-        let Some(hit) = shear.resolve(&triangles.triangle(lane)) else { continue };
+        let Some(hit) = shear.resolve(triangles, lane) else { continue };
         let t = hit.t as f32;
         if hit.t > 0.0 && t < nearest.t {
             let id = triangles.ids[lane];

@@ -8,7 +8,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles};
 
 use super::Packet;
 use crate::math::{Ray, Vec2, Vec3};
@@ -16,10 +16,10 @@ use crate::math::{Ray, Vec2, Vec3};
 /// A ray made ready for triangles: the axis nearest to its direction and the shear onto it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shear {
+    /// Which axes are x, y and z of the sheared space, z the one along the ray: the coordinates of all else here.
+    axes: [usize; 3],
     origin: Vec3,
     dir: Vec3,
-    /// Axes: x and y of the sheared space, and the one along the ray.
-    axes: [usize; 3],
     /// `dir_x/dir_z`, `dir_y/dir_z`, `1/dir_z`.
     by: Vec3,
 }
@@ -35,15 +35,14 @@ impl Shear {
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Self {
         let a = ray.dir.abs();
-        let axes = if a.x > a.y && a.x > a.z {
-            [1, 2, 0]
+        let (axes, origin, dir) = if a.x > a.y && a.x > a.z {
+            ([1, 2, 0], ray.origin.yzx(), ray.dir.yzx())
         } else if a.y > a.z {
-            [2, 0, 1]
+            ([2, 0, 1], ray.origin.zxy(), ray.dir.zxy())
         } else {
-            [0, 1, 2]
+            ([0, 1, 2], ray.origin, ray.dir)
         };
-        let d = Vec3::new(ray.dir[axes[0]], ray.dir[axes[1]], ray.dir[axes[2]]);
-        Self { origin: ray.origin, dir: ray.dir, axes, by: Vec3::new(d.x / d.z, d.y / d.z, 1.0 / d.z) }
+        Self { axes, origin, dir, by: Vec3::new(dir.x / dir.z, dir.y / dir.z, 1.0 / dir.z) }
     }
 
     /// The lanes whose triangle the ray's line meets in front of the origin and before `t_max`: all of the truth, and
@@ -66,18 +65,19 @@ impl Shear {
     #[inline(always)]
     fn sheared_lanes<S: Simd>(&self, simd: S, v: &[[f32; 8]; 3]) -> (f32x8<S>, f32x8<S>, f32x8<S>) {
         let [kx, ky, kz] = self.axes;
-        let z = f32x8::simd_from(simd, v[kz]) - f32x8::splat(simd, self.origin[kz]);
-        let x =
-            (f32x8::simd_from(simd, v[kx]) - f32x8::splat(simd, self.origin[kx])) - f32x8::splat(simd, self.by.x) * z;
-        let y =
-            (f32x8::simd_from(simd, v[ky]) - f32x8::splat(simd, self.origin[ky])) - f32x8::splat(simd, self.by.y) * z;
+        let (origin, by) = (self.origin, self.by);
+        let z = f32x8::simd_from(simd, v[kz]) - f32x8::splat(simd, origin.z);
+        let x = (f32x8::simd_from(simd, v[kx]) - f32x8::splat(simd, origin.x)) - f32x8::splat(simd, by.x) * z;
+        let y = (f32x8::simd_from(simd, v[ky]) - f32x8::splat(simd, origin.y)) - f32x8::splat(simd, by.y) * z;
         (x, y, z * f32x8::splat(simd, self.by.z))
     }
 
     /// The hit on one triangle, if there is one: the same edge functions without error, and the distance.
     #[inline(always)]
-    pub(super) fn resolve(&self, triangle: &[Vec3; 3]) -> Option<TriangleHit> {
-        // Written out: `map` is not always inlined, and then loses the instruction set.
+    pub(super) fn resolve(&self, packet: &Packet, lane: usize) -> Option<TriangleHit> {
+        // Written out: `map` is not always inlined, and then loses the instruction set; and it copies the packet.
+        let [a, b, c] = &packet.vertex;
+        let triangle = [self.vertex(a, lane), self.vertex(b, lane), self.vertex(c, lane)];
         let (a, b, c) = (self.sheared(triangle[0]), self.sheared(triangle[1]), self.sheared(triangle[2]));
         let u = c.0 * b.1 - c.1 * b.0;
         let v = a.0 * c.1 - a.1 * c.0;
@@ -88,17 +88,22 @@ impl Shear {
             return None;
         }
         let inv = 1.0 / det;
-        let t = self.distance(triangle, [u * inv, v * inv, w * inv]);
+        let t = self.distance(&triangle, [u * inv, v * inv, w * inv]);
         Some(TriangleHit { t, uv: Vec2::new((v * inv) as f32, (w * inv) as f32) })
+    }
+
+    #[inline(always)]
+    fn vertex(&self, v: &[[f32; 8]; 3], lane: usize) -> Vec3 {
+        let [kx, ky, kz] = self.axes;
+        Vec3::new(v[kx][lane], v[ky][lane], v[kz][lane])
     }
 
     /// The sheared vertex: rounded as in [`Self::candidates`], then exact.
     #[inline(always)]
     fn sheared(&self, v: Vec3) -> (f64, f64) {
-        let [kx, ky, kz] = self.axes;
-        let z = v[kz] - self.origin[kz];
-        let x = (v[kx] - self.origin[kx]) - self.by.x * z;
-        let y = (v[ky] - self.origin[ky]) - self.by.y * z;
+        let z = v.z - self.origin.z;
+        let x = (v.x - self.origin.x) - self.by.x * z;
+        let y = (v.y - self.origin.y) - self.by.y * z;
         (f64::from(x), f64::from(y))
     }
 
@@ -112,9 +117,8 @@ impl Shear {
         let (e1, e2): (DVec3, DVec3) = (p1 - p0, p2 - p0);
         let normal = e1.cross(e2);
         let slope = normal.dot(dir);
-        let kz = self.axes[2];
-        let inv = 1.0 / dir[kz];
-        let depth = [p0[kz] * inv, p1[kz] * inv, p2[kz] * inv];
+        let inv = 1.0 / dir.z;
+        let depth = [p0.z * inv, p1.z * inv, p2.z * inv];
         // Long edges stand for the normal's length here: a thin triangle turns by more.
         let grazing =
             slope * slope <= GRAZING * GRAZING * e1.length_squared() * e2.length_squared() * dir.length_squared();
