@@ -245,7 +245,7 @@ fn fogs_that_share_a_place_add_what_they_emit() {
         world.sky(1.0);
         world
     };
-    assert_all("vanishing", vanishing, [1.0; 3], 0.03, 20_000);
+    assert_all("vanishing", vanishing, [1.0; 3], 0.03, 40_000);
     let shining = || {
         let mut world = from_above();
         for (by, le) in [(0.5, 3.0), (1.0, 1.0)] {

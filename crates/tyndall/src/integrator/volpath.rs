@@ -152,7 +152,7 @@ impl Path {
             Event::Scatter { p, phase, emitted } => {
                 self.find_emission(emitted, sink);
                 let light = match settings.deep {
-                    Deep::Traced => Attempt::CERTAIN,
+                    Deep::Traced => self.attempt(scene),
                     Deep::Alone | Deep::Together => self.look_around(scene, p),
                 };
                 self.history.order += 1;
@@ -324,9 +324,6 @@ impl Path {
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
-        if matches!(vertex, Vertex::Medium { .. }) && !scene.light_can_reach(self.inside.id()) {
-            return;
-        }
         let [u_choice, u, v] = self.sampler.light(self.history.vertices);
         let Some((id, probability)) = scene.lights.choose(reference, u_choice) else { return };
         let light: &Light = scene.lights.get(id);

@@ -54,6 +54,8 @@ pub struct Attempt {
 impl Attempt {
     /// As at every surface.
     pub const CERTAIN: Self = Self { odds: 1.0, supposed: 1.0, made: true };
+    /// As in a medium that no light reaches: what paths run into there counts in full.
+    pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, made: false };
 }
 
 impl Default for Surroundings {
@@ -82,10 +84,16 @@ impl Path {
         self.around.depths
     }
 
+    /// Whether light is sampled at a collision about whose surroundings nothing is known.
+    #[inline]
+    pub(crate) fn attempt(&self, scene: &Scene) -> Attempt {
+        if scene.light_can_reach(self.inside.id()) { Attempt::CERTAIN } else { Attempt::NONE }
+    }
+
     /// At a collision: how far the nearest surface is, and with that whether light is sampled.
     #[inline]
     pub(crate) fn look_around(&mut self, scene: &Scene, p: Vec3) -> Attempt {
-        let Some(depths) = self.depths(scene) else { return Attempt::CERTAIN };
+        let Some(depths) = self.depths(scene) else { return self.attempt(scene) };
         let left = std::mem::replace(&mut self.around.left, Left::Nothing);
         let supposed = match left {
             Left::Collision { .. } => depths.odds(self.around.ball.room(p).max(0.0)),
