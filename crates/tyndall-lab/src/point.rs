@@ -62,7 +62,7 @@ pub struct Fluence {
     pub m0: Estimate,
     /// `∫ 4π r² φ r² dr` [length³].
     pub m2: Estimate,
-    /// `∫ 4π r² φ r⁴ dr` [length⁵].
+    /// `∫ 4π r² φ r⁴ dr` \[length⁵\].
     pub m4: Estimate,
 }
 
