@@ -6,7 +6,7 @@ use common::{World, assert_mean, diffuse, glass, medium};
 use tyndall::{
     camera::{CameraModel, Perspective},
     film::{Crop, Filter},
-    integrator::{Analog, Counted, Integrator, VolPath},
+    integrator::{Analog, Counted, Deep, Integrator, VolPath},
     light::{Light, PointLight},
     material::{Index, Material, Roughness},
     math::Vec3,
@@ -136,10 +136,20 @@ fn volpath_agrees_with_its_naive_twin() {
     }
 }
 
-/// Glass that disperses sends each wavelength its own way, and still neither makes nor takes light.
+/// Glass that disperses sends each wavelength its own way, and still neither makes nor takes light; nor does what it holds,
+/// which scatters each wavelength by another coefficient.
 #[test]
 fn a_ball_of_flint_glass_under_a_uniform_sky_vanishes() {
-    for integrator in [&VolPath::default() as &dyn Integrator, &Analog] {
+    let coloured = || Some(medium([0.0; 3], [1.0, 3.0, 8.0], 0.3));
+    let traced = VolPath { deep: Deep::Traced, ..VolPath::default() };
+    let cases: [(&dyn Integrator, _); 5] = [
+        (&VolPath::default(), None),
+        (&Analog, None),
+        (&VolPath::default(), coloured()),
+        (&traced, coloured()),
+        (&Analog, coloured()),
+    ];
+    for (integrator, inside) in cases {
         let mut world = World::seen(Vec3::new(0.0, 0.3, 5.0), Vec3::new(0.0, 0.3, 0.0));
         world.color = ColorMode::Spectral;
         let flint = Material::Dielectric {
@@ -148,7 +158,7 @@ fn a_ball_of_flint_glass_under_a_uniform_sky_vanishes() {
             reflection_tint: 1.0.into(),
             transmission_tint: 1.0.into(),
         };
-        world.sphere(Vec3::ZERO, 1.0, flint, None);
+        world.sphere(Vec3::ZERO, 1.0, flint, inside);
         world.sky(1.0);
         assert_mean("flint", &world.measure(integrator, 200_000), [1.0; 3], 0.01);
     }

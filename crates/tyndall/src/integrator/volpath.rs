@@ -259,7 +259,7 @@ impl Path {
         }
         // What only reflects is another BSDF for each wavelength, if it disperses: they part before light is sampled.
         if disperses && !vertex.transmits() {
-            self.part_wavelengths();
+            self.part_wavelengths(scene);
         }
         let reference = vertex.reference();
         if light.made && vertex.can_use_light_samples() {
@@ -280,7 +280,7 @@ impl Path {
             return self.cut(tally);
         }
         if disperses && scattered.eta != 1.0 {
-            self.part_wavelengths();
+            self.part_wavelengths(scene);
         }
         if scattered.specular {
             self.weights.scatter_specular(scattered.weight);
@@ -305,11 +305,19 @@ impl Path {
         Status::Done
     }
 
-    /// Past a boundary that disperses, each wavelength has its own way: the path goes on with the hero's.
-    fn part_wavelengths(&mut self) {
+    /// Past a boundary that disperses, each wavelength has its own way: the path goes on with the hero's, in every lane, so
+    /// that no lane could have decided otherwise.
+    fn part_wavelengths(&mut self, scene: &Scene) {
         if matches!(self.wavelengths, Wavelengths::Spectral { .. }) && !self.history.parted {
             self.history.parted = true;
             self.weights.keep_hero_only(self.hero);
+            self.wavelengths = self.wavelengths.hero_everywhere(self.hero);
+            self.forget_surroundings();
+            self.inside = match self.inside {
+                Inside::Medium { id, .. } => Inside::of(scene, Some(id), &self.wavelengths),
+                Inside::Mixture { .. } => self.within.inside(scene, &self.wavelengths),
+                Inside::Vacuum => Inside::Vacuum,
+            };
         }
     }
 

@@ -56,6 +56,15 @@ impl Wavelengths {
         }
     }
 
+    /// The wavelength of lane `hero` in every lane, for a path that the others have left.
+    #[must_use]
+    pub fn hero_everywhere(&self, hero: usize) -> Self {
+        match *self {
+            Self::Spectral { lambda, pdf } => Self::Spectral { lambda: [lambda[hero]; 4], pdf: [pdf[hero]; 4] },
+            Self::Rgb | Self::Mono => *self,
+        }
+    }
+
     /// The wavelength [nm] at which a dispersive index is evaluated: that of lane `hero`, or outside of spectral mode
     /// the helium d line, 587.56 nm, for which indices of glass are quoted.
     #[inline]
