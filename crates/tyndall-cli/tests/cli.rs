@@ -1,5 +1,7 @@
 //! The program as a user meets it: what it says, what it leaves behind, how it ends.
 
+mod common;
+
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -7,6 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use common::Desk;
 use tyndall_formats::film::{Image, exr};
 
 /// A ball over a floor under a small light, in fog: every kind of event in a few pixels.
@@ -32,21 +35,17 @@ Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
 Shape "bilinearmesh" "point3 P" [ -4 -2 -4  4 -2 -4  -4 -2 4  4 -2 4 ]
 "#;
 
-/// A directory of the test's own, removed when it is done.
-struct Desk(PathBuf);
-
 impl Desk {
-    fn new(name: &str) -> Self {
-        let dir = std::env::temp_dir().join(format!("tyndall-cli-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&dir);
-        fs::create_dir_all(&dir).unwrap();
-        fs::write(dir.join("ball.pbrt"), SCENE).unwrap();
-        Self(dir)
+    /// With the scene `ball.pbrt`.
+    fn with_ball(name: &str) -> Self {
+        let desk = Self::new(name);
+        fs::write(desk.0.join("ball.pbrt"), SCENE).unwrap();
+        desk
     }
 
     fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall"));
-        command.current_dir(&self.0).args(arguments.split_whitespace());
+        let mut command = self.program();
+        command.args(arguments.split_whitespace());
         command
     }
 
@@ -63,12 +62,6 @@ impl Desk {
 
     fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
-    }
-}
-
-impl Drop for Desk {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 
@@ -91,7 +84,7 @@ fn left_behind(desk: &Desk) -> Vec<String> {
 
 #[test]
 fn help_teaches_by_example() {
-    let desk = Desk::new("help");
+    let desk = Desk::with_ball("help");
     for (arguments, words) in [
         ("--help", ["render", "compare", "lecture"]),
         ("render --help", ["Examples:", "--spp", "lecture-volume-0.75"]),
@@ -108,7 +101,7 @@ fn help_teaches_by_example() {
 
 #[test]
 fn what_cannot_be_done_ends_with_status_2_and_says_why() {
-    let desk = Desk::new("bad");
+    let desk = Desk::with_ball("bad");
     fs::write(desk.path("bad.pbrt"), SCENE.replace("\"float radius\" 1.5", "\"float radios\" 1.5")).unwrap();
     fs::write(desk.path("cut.exr"), [0x76, 0x2f, 0x31, 0x01, 2]).unwrap();
     for (arguments, words) in [
@@ -139,7 +132,7 @@ fn what_cannot_be_done_ends_with_status_2_and_says_why() {
 
 #[test]
 fn a_fault_of_a_scene_is_shown_where_it_is() {
-    let desk = Desk::new("fault");
+    let desk = Desk::with_ball("fault");
     fs::write(desk.path("bad.pbrt"), SCENE.replace("\"float fov\"", "\"float fow\"")).unwrap();
     let message = err(&desk.tyndall("render bad.pbrt"));
     assert!(message.contains("bad.pbrt:5:") && message.contains("fow") && message.contains("fov"), "{message}");
@@ -147,7 +140,7 @@ fn a_fault_of_a_scene_is_shown_where_it_is() {
 
 #[test]
 fn the_image_is_named_after_the_scene_and_tells_how_it_was_made() {
-    let desk = Desk::new("names");
+    let desk = Desk::with_ball("names");
     let output = desk.tyndall("render ball.pbrt --seed 7 --crop 2,3,20,15");
     assert!(output.status.success(), "{}", err(&output));
     assert_eq!(left_behind(&desk), ["ball.exr", "ball.png"]);
@@ -164,7 +157,7 @@ fn the_image_is_named_after_the_scene_and_tells_how_it_was_made() {
 
 #[test]
 fn the_image_depends_on_the_seed_and_on_nothing_else() {
-    let desk = Desk::new("bits");
+    let desk = Desk::with_ball("bits");
     let first = desk.render("--spp 8", "a.exr");
     let same = |image: &Image| first.mean == image.mean && first.standard_error == image.standard_error;
     assert!(same(&desk.render("--spp 8", "b.exr")), "twice");
@@ -175,7 +168,7 @@ fn the_image_depends_on_the_seed_and_on_nothing_else() {
 
 #[test]
 fn a_crop_of_the_image_is_the_image_of_the_crop() {
-    let desk = Desk::new("crop");
+    let desk = Desk::with_ball("crop");
     let whole = desk.render("--spp 4", "whole.exr");
     let crop = desk.render("--spp 4 --crop 5,3,22,17", "crop.exr");
     for (i, mean) in crop.mean.iter().enumerate() {
@@ -186,7 +179,7 @@ fn a_crop_of_the_image_is_the_image_of_the_crop() {
 
 #[test]
 fn statistics_go_to_standard_output_alone() {
-    let desk = Desk::new("json");
+    let desk = Desk::with_ball("json");
     let output = desk.tyndall("render ball.pbrt --quiet --json - --max-depth 2");
     assert!(output.status.success() && output.stderr.is_empty(), "{}", err(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -202,7 +195,7 @@ fn statistics_go_to_standard_output_alone() {
 
 #[test]
 fn a_limit_of_time_ends_the_render_with_an_image() {
-    let desk = Desk::new("time");
+    let desk = Desk::with_ball("time");
     let image = desk.render("--time 300ms", "a.exr");
     let taken = image.metadata.unwrap().samples_per_pixel;
     assert!(taken > 1.0, "{taken} samples a pixel");
@@ -210,7 +203,7 @@ fn a_limit_of_time_ends_the_render_with_an_image() {
 
 #[test]
 fn two_renders_agree_and_a_brighter_one_does_not() {
-    let desk = Desk::new("compare");
+    let desk = Desk::with_ball("compare");
     desk.render("--spp 64 --sampler independent", "a.exr");
     desk.render("--spp 64 --sampler independent --seed 1", "b.exr");
     fs::write(desk.path("ball.pbrt"), SCENE.replace("0.3 0.4 0.6", "0.32 0.43 0.64")).unwrap();
@@ -230,7 +223,7 @@ fn two_renders_agree_and_a_brighter_one_does_not() {
 
 #[test]
 fn ctrl_c_leaves_the_image_so_far() {
-    let desk = Desk::new("interrupt");
+    let desk = Desk::with_ball("interrupt");
     let child = desk.command("render ball.pbrt --spp 4000000000 -o a").stderr(Stdio::piped()).spawn().unwrap();
     // Long enough that the first passes are done on a loaded machine; the first image is there within milliseconds.
     std::thread::sleep(Duration::from_millis(1500));
@@ -250,7 +243,7 @@ fn ctrl_c_leaves_the_image_so_far() {
 
 #[test]
 fn info_tells_media_by_their_lengths() {
-    let desk = Desk::new("info");
+    let desk = Desk::with_ball("info");
     let output = desk.tyndall("info ball.pbrt");
     assert!(output.status.success(), "{}", err(&output));
     // 1/(0.5 + 0.05) = 1.8182; 1/(0.05 + 0.5·0.5) = 3.3333.
@@ -261,7 +254,7 @@ fn info_tells_media_by_their_lengths() {
 
 #[test]
 fn other_resolutions_show_the_same_picture() {
-    let desk = Desk::new("resolution");
+    let desk = Desk::with_ball("resolution");
     let image = desk.render("--resolution 12x9", "a.exr");
     assert_eq!((image.width, image.height), (12, 9));
     assert!(Path::new(&desk.path("a.exr")).exists());
@@ -270,7 +263,7 @@ fn other_resolutions_show_the_same_picture() {
 /// Seventeen samples a pixel of everything in a few pixels: what counts is that all of it is there.
 #[test]
 fn the_lecture_leaves_images_a_contact_sheet_a_plot_and_a_table() {
-    let desk = Desk::new("lecture");
+    let desk = Desk::with_ball("lecture");
     let output = desk.tyndall("lecture --spp 2 --reference-spp 16 --resolution 16x16 --out slides");
     assert!(output.status.success(), "{}", err(&output));
     assert_eq!(out(&output).lines().count(), 1 + 8);
@@ -289,7 +282,7 @@ fn the_lecture_leaves_images_a_contact_sheet_a_plot_and_a_table() {
 /// The ball's filter is the one that pbrt takes by default, which Mitsuba does not have: with another one it is the same image.
 #[test]
 fn a_scene_in_the_other_language_is_the_same_image() {
-    let desk = Desk::new("convert");
+    let desk = Desk::with_ball("convert");
     fs::write(desk.0.join("ball.pbrt"), format!("PixelFilter \"box\"\n{SCENE}")).unwrap();
     for arguments in ["convert ball.pbrt ball.xml", "convert ball.xml back.pbrt"] {
         let output = desk.tyndall(arguments);
@@ -306,7 +299,7 @@ fn a_scene_in_the_other_language_is_the_same_image() {
 
 #[test]
 fn what_the_other_language_has_no_word_for_is_refused_where_it_stands_or_left_out_with_a_comment() {
-    let desk = Desk::new("convert-lenient");
+    let desk = Desk::with_ball("convert-lenient");
     let scene = SCENE.replace("Camera \"perspective\" \"float fov\" 40", "PixelFilter \"sinc\"");
     fs::write(desk.0.join("ball.pbrt"), scene).unwrap();
     let refused = desk.tyndall("convert ball.pbrt ball.xml");
@@ -321,7 +314,7 @@ fn what_the_other_language_has_no_word_for_is_refused_where_it_stands_or_left_ou
 
 #[test]
 fn a_scene_is_never_written_over_itself() {
-    let desk = Desk::new("convert-itself");
+    let desk = Desk::with_ball("convert-itself");
     let before = fs::read(desk.0.join("ball.pbrt")).unwrap();
     let refused = desk.tyndall("convert ball.pbrt ./ball.pbrt");
     assert_eq!(refused.status.code(), Some(2));

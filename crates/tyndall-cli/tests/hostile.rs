@@ -1,24 +1,14 @@
 //! Instruments and verifier on input that cannot be: a message, status 2, nothing written or overwritten.
 
-use std::{
-    fs,
-    path::PathBuf,
-    process::{Command, Output},
-};
+mod common;
 
-/// A directory of the test's own, removed when it is done.
-struct Desk(PathBuf);
+use std::{fs, process::Output};
+
+use common::Desk;
 
 impl Desk {
-    fn new(name: &str) -> Self {
-        let dir = std::env::temp_dir().join(format!("tyndall-hostile-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&dir);
-        fs::create_dir_all(&dir).unwrap();
-        Self(dir)
-    }
-
     fn tyndall(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_tyndall")).current_dir(&self.0).args(arguments).output().unwrap()
+        self.program().args(arguments).output().unwrap()
     }
 
     /// Fails unless the program refuses, and says `words`.
@@ -30,12 +20,6 @@ impl Desk {
         assert!(told.contains(words), "{arguments:?}: no `{words}` in\n{told}");
         assert!(!told.contains("panicked"), "{told}");
         assert_eq!(output.stdout, b"", "{arguments:?}");
-    }
-}
-
-impl Drop for Desk {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 

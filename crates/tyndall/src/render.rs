@@ -184,15 +184,14 @@ fn render_tile(
         .flat_map(|pixel| samples.clone().map(move |index| Seen::new(scene, settings, pixel, index)))
         .collect();
     tile.tally.paths += seen.len() as u64;
-    let passed: Vec<_> = seen.iter().filter(|seen| seen.camera.weight != 0.0).map(|seen| seen.sample).collect();
+    let passed: Vec<_> = seen.iter().filter(|seen| seen.weight != 0.0).map(|seen| seen.sample).collect();
     let mut radiances = integrator.li_many(scene, &passed, &mut tile.tally).into_iter();
 
     let (layers, per_pixel) = (scene.camera.layers.len(), samples.len());
     for (i, seen) in seen.iter().enumerate() {
         let pixel = &mut tile.pixels[i / per_pixel];
-        let radiance = if seen.camera.weight == 0.0 { None } else { radiances.next() };
-        let Some(radiance) = radiance else {
-            pixel.add([0.0; 3]); // the lens stopped it
+        let Some(radiance) = (seen.weight != 0.0).then(|| radiances.next()).flatten() else {
+            pixel.add([0.0; 3]);
             continue;
         };
         seen.fill(scene, radiance, &mut tile.cells[i / per_pixel * layers..][..layers]);
@@ -211,23 +210,24 @@ fn render_tile(
 struct Seen {
     pixel: (u32, u32),
     index: u32,
-    camera: CameraRay,
+    /// What it weighs: nothing if the lens stopped it \[1\].
+    weight: f32,
     sample: CameraSample,
 }
 
 impl Seen {
     fn new(scene: &Scene, settings: &Settings, pixel: (u32, u32), index: u32) -> Self {
         let mut sampler = Sampler::new(settings.sampler, pixel, index, settings.seed);
-        let camera = scene.camera.sample_ray(pixel, sampler.camera());
+        let CameraRay { ray, weight } = scene.camera.sample_ray(pixel, sampler.camera());
         let [u_wavelength, u_hero] = sampler.wavelength();
         let wavelengths = Wavelengths::sample(scene.color, u_wavelength);
-        let sample = CameraSample { ray: camera.ray, wavelengths, u_hero, sampler };
-        Self { pixel, index, camera, sample }
+        let sample = CameraSample { ray, wavelengths, u_hero, sampler };
+        Self { pixel, index, weight, sample }
     }
 
     /// Linear sRGB (which may be negative for a single wavelength, and where the filter is).
     fn value(&self, scene: &Scene, radiance: Lanes) -> [f32; 3] {
-        let factor = scene.camera.exposure * self.camera.weight;
+        let factor = scene.camera.exposure * self.weight;
         film_rgb(radiance, &self.sample.wavelengths).map(|v| v * factor)
     }
 
@@ -237,9 +237,11 @@ impl Seen {
         let mut first = None;
         for (cell, layer) in cells.iter_mut().zip(&scene.camera.layers) {
             cell.add(match layer.recorded {
-                Recorded::Light(bands) => bands.sample(radiance, wavelengths).map(|v| v * self.camera.weight),
+                Recorded::Light(bands) => bands.sample(radiance, wavelengths).map(|v| v * self.weight),
                 Recorded::Surface(feature) => {
-                    let first = first.get_or_insert_with(|| FirstHit::of(scene, self.camera));
+                    let first = first.get_or_insert_with(|| {
+                        FirstHit::of(scene, CameraRay { ray: self.sample.ray, weight: self.weight })
+                    });
                     first.sample(feature, wavelengths, &mut sampler)
                 }
             });

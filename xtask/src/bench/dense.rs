@@ -1,12 +1,13 @@
-//! Dense media: efficiency beside both backends of Mitsuba at the best of its settings, and what a collision costs beside
-//! the bare loop of `bare_walk.rs`.
+//! Dense media: efficiency beside both backends of Mitsuba at the best of its settings, and beside the same integrator
+//! without walks; and what a collision costs beside the bare loop of `bare_walk.rs`.
 
 use anyhow::{Context, Result};
 
 use super::{judge, lab, scenes};
-use crate::peers::scene_file;
+use crate::peers::runs::{Runs, Side, Turn};
 use crate::peers::statistics::median;
 use crate::peers::tyndall::Tyndall;
+use crate::peers::{directory, scene_file};
 use crate::shell::output;
 
 /// Scenes, and how many times the efficiency of the better Mitsuba is asked.
@@ -17,6 +18,9 @@ const COLLISION: f64 = 8.0;
 /// Measures and prints.
 pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
     scenes::race_all(&SCENES, tyndall, turns)?;
+    for (scene, _) in SCENES {
+        walks_over_rays(scene, tyndall, turns)?;
+    }
     let bare = lab::compile_bare_walk()?;
     let (mut loops, mut collisions) = (Vec::new(), Vec::new());
     for _ in 0..turns {
@@ -26,6 +30,27 @@ pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
     let (bare, ours) = (median(&loops), median(&collisions));
     println!("bare loop: {bare:.2} ns a collision in 16 lanes; whole milk, all told: {:.1} times that", ours / bare);
     judge("a collision in whole milk, all told, one core", ours, "ns", ours <= COLLISION, "8 ns");
+    Ok(())
+}
+
+/// How many times the efficiency of a ray for each flight walks have.
+fn walks_over_rays(scene: &str, tyndall: &Tyndall, turns: u32) -> Result<()> {
+    const SPP: u32 = 8;
+    let directory = directory(scene)?;
+    let mut sides: [Vec<Runs>; 2] = [Vec::new(), Vec::new()];
+    for turn in Turn::all(turns, 2) {
+        for (integrator, runs) in ["volpath", "volpath-traced"].into_iter().zip(&mut sides) {
+            let extra = ["--integrator", integrator];
+            runs.push(tyndall.render(&scene_file(scene), SPP, turn, &directory.join(integrator), &extra)?);
+        }
+    }
+    let [walks, rays] = sides.map(|runs| Side::of(&runs, SPP));
+    println!(
+        "{scene}: walks {:.3e}, a ray for each flight {:.3e}: {:.2}×",
+        walks.efficiency,
+        rays.efficiency,
+        walks.efficiency_over(&rays)
+    );
     Ok(())
 }
 

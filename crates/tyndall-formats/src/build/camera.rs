@@ -9,10 +9,9 @@ use tyndall::{
         RadianceMeter, Realistic, Spherical, SphericalMapping, Stop, Surface, Target, ThinLens, View,
     },
     film::{Filter, Kernel, Lobed},
+    math::{Vec2, Vec3},
+    shape::Geometry,
 };
-
-use tyndall::math::{Vec2, Vec3};
-use tyndall::shape::Geometry;
 
 use super::{Builder, medium_id, shapes::Shapes};
 use crate::{
@@ -290,10 +289,10 @@ fn may_be_nearer(view: &View, geometry: &Geometry, near: f32) -> bool {
         return depths.into_iter().fold(f32::INFINITY, f32::min) < near;
     }
     // The farthest corner of the near plane, and the lens.
-    let corner = at(0.0, 0.0).dir.dot(depth).min(at(1.0, 1.0).dir.dot(depth)).min(at(0.0, 1.0).dir.dot(depth));
-    let reach = near * depth.length_squared() / corner.min(at(1.0, 0.0).dir.dot(depth));
+    let cosines = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(x, y)| at(x, y).dir.dot(depth));
     let lens = [0.0, 0.5, 1.0].map(|u| view.ray(Vec2::splat(0.5), Vec2::new(u, 0.0)).ray.origin.distance(eye));
-    let reach = reach + 2.0 * lens.into_iter().fold(0.0, f32::max);
+    let reach = near * depth.length_squared() / cosines.into_iter().fold(f32::INFINITY, f32::min)
+        + 2.0 * lens.into_iter().fold(0.0, f32::max);
     geometry.clearance(eye, reach) < reach
 }
 

@@ -5,7 +5,7 @@
 use super::{
     CameraSample, VolPath,
     volpath::Status,
-    walk::together::{School, WIDTH},
+    walk::together::{WIDTH, Walks},
 };
 use crate::{medium::MediumId, path::Path, scene::Scene, spectrum::Lanes, tally::Tally};
 
@@ -16,16 +16,16 @@ const PATHS: usize = 128;
 struct Pool<'a> {
     scene: &'a Scene,
     settings: &'a VolPath,
-    paths: Vec<Swimmer>,
+    paths: Vec<Slot>,
     /// Numbers of paths that are at their end.
     free: Vec<u32>,
     /// Walks under way, by medium.
-    schools: Vec<School>,
+    walks: Vec<Walks>,
     radiance: Vec<Lanes>,
 }
 
 /// A path with the number of the sample that it belongs to.
-struct Swimmer {
+struct Slot {
     path: Path,
     sample: usize,
 }
@@ -37,30 +37,30 @@ pub(super) fn estimate(scene: &Scene, settings: &VolPath, samples: &[CameraSampl
         settings,
         paths: Vec::with_capacity(PATHS),
         free: Vec::new(),
-        schools: (0..scene.media.len())
+        walks: (0..scene.media.len())
             .map(|i| MediumId(i as u32))
-            .map(|id| School::new(id, scene.light_can_reach(Some(id))))
+            .map(|id| Walks::new(id, scene.light_can_reach(Some(id))))
             .collect(),
         radiance: vec![Lanes::ZERO; samples.len()],
     };
     let mut samples = samples.iter().enumerate();
-    let mut emerged = Vec::with_capacity(PATHS);
+    let mut ended = Vec::with_capacity(PATHS);
     loop {
         while let Some(slot) = pool.free_slot() {
             let Some((sample, seen)) = samples.next() else { break };
             pool.start(slot, sample, seen, tally);
         }
-        let Some(school) = pool.schools.iter_mut().max_by_key(|school| school.len()) else { break };
-        if school.len() == 0 {
+        let Some(walks) = pool.walks.iter_mut().max_by_key(|walks| walks.len()) else { break };
+        if walks.len() == 0 {
             break;
         }
-        let least = if school.len() < WIDTH { 1 } else { WIDTH };
-        let (paths, phase) = (&mut pool.paths, &scene.medium(school.medium()).phase);
-        school.swim(phase, least, |slot, walker, end| {
-            paths[slot as usize].path.emerge(walker, end, phase, tally);
-            emerged.push(slot);
+        let least = if walks.len() < WIDTH { 1 } else { WIDTH };
+        let (paths, phase) = (&mut pool.paths, &scene.medium(walks.medium()).phase);
+        walks.advance(phase, least, |slot, walker, end| {
+            paths[slot as usize].path.end_walk(walker, end, phase, tally);
+            ended.push(slot);
         });
-        for slot in emerged.drain(..) {
+        for slot in ended.drain(..) {
             pool.advance(slot, tally);
         }
     }
@@ -76,19 +76,19 @@ impl Pool<'_> {
     fn start(&mut self, slot: u32, sample: usize, seen: &CameraSample, tally: &mut Tally) {
         let path = Path::new(self.scene, seen);
         match self.free.pop() {
-            Some(free) => self.paths[free as usize] = Swimmer { path, sample },
-            None => self.paths.push(Swimmer { path, sample }),
+            Some(free) => self.paths[free as usize] = Slot { path, sample },
+            None => self.paths.push(Slot { path, sample }),
         }
         self.advance(slot, tally);
     }
 
     /// Follows a path until it walks deep inside a medium or ends.
     fn advance(&mut self, slot: u32, tally: &mut Tally) {
-        let Swimmer { path, sample } = &mut self.paths[slot as usize];
+        let Slot { path, sample } = &mut self.paths[slot as usize];
         let radiance = &mut self.radiance[*sample];
         while path.step(self.scene, self.settings, radiance, tally) == Status::Alive {
-            if let Some(walker) = path.dive(self.settings) {
-                self.schools[walker.medium.0 as usize].push(slot, walker);
+            if let Some(walker) = path.begin_walk(self.settings) {
+                self.walks[walker.medium.0 as usize].push(slot, walker);
                 return;
             }
         }

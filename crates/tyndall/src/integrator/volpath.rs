@@ -81,10 +81,10 @@ impl Integrator for VolPath {
         let mut radiance = Lanes::ZERO;
         let mut path = Path::new(scene, seen);
         while path.step(scene, self, &mut radiance, tally) == Status::Alive {
-            if let Some(mut walker) = path.dive(self) {
+            if let Some(mut walker) = path.begin_walk(self) {
                 let phase = &scene.medium(walker.medium).phase;
                 let end = walker.alone(phase);
-                path.emerge(&walker, end, phase, tally);
+                path.end_walk(&walker, end, phase, tally);
             }
         }
         radiance

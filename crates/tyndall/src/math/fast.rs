@@ -28,12 +28,12 @@ pub fn ln(x: f32) -> f32 {
     f + y + 0.693_359_4 * e
 }
 
-/// `eˣ` for `x ≤ 88`; relative error below 2·10⁻⁷; 0 where the result would be denormal.
+/// `eˣ`; relative error below 2·10⁻⁷; 0 where the result would be denormal, infinite above 88, and NaN for NaN.
 ///
 /// Argument reduction to `[−½ ln 2, ½ ln 2]` and the polynomial of Cephes `expf` (Moshier 1989).
 #[inline]
 pub fn exp(x: f32) -> f32 {
-    let held = if x > -87.0 { x } else { -87.0 };
+    let held = if x < -87.0 { -87.0 } else { x };
     let (n, whole) = nearest(held * std::f32::consts::LOG2_E);
     let r = held - n * 0.693_359_4 + n * 2.121_944_4e-4;
     let mut p = 1.987_569_1e-4;
@@ -44,7 +44,13 @@ pub fn exp(x: f32) -> f32 {
     p = p * r + 5e-1;
     let y = p * r * r + r + 1.0;
     let power = f32::from_bits(whole.wrapping_add(127) << 23);
-    if x < -87.0 { 0.0 } else { y * power }
+    if x > 88.0 {
+        f32::INFINITY
+    } else if x < -87.0 {
+        0.0
+    } else {
+        y * power
+    }
 }
 
 /// The whole number nearest to `x`, for |x| < 2²², also as an integer: no rounding instruction and no checked cast, which
@@ -97,6 +103,7 @@ mod tests {
             assert!((f64::from(exp(x)) / exact - 1.0).abs() < 2e-7, "exp({x})");
         }
         assert_eq!((exp(0.0), exp(-1e4), exp(f32::NEG_INFINITY)), (1.0, 0.0, 0.0));
+        assert!(exp(f32::NAN).is_nan() && exp(100.0) == f32::INFINITY && exp(f32::INFINITY) == f32::INFINITY);
     }
 
     #[test]

@@ -112,7 +112,7 @@ impl Path {
 
     /// Begins a walk, if there is room for one.
     #[inline]
-    pub(crate) fn dive(&self, settings: &VolPath) -> Option<Walker> {
+    pub(crate) fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
         let Surroundings { depths: Some(depths), ball, left: Left::Nothing, .. } = self.around else { return None };
         if !depths.is_roomy(ball.room(self.ray.origin)) || self.history.vertices < Sampler::STRATIFIED_VERTICES {
             return None;
@@ -137,7 +137,7 @@ impl Path {
 
     /// Comes back from a walk.
     #[inline]
-    pub(crate) fn emerge(&mut self, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
+    pub(crate) fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
         let Some(depths) = self.around.depths else { return };
         tally.collisions += u64::from(walker.collisions);
         self.ray = Ray::new(walker.p, walker.dir);

@@ -37,8 +37,9 @@ pub struct SphericalRectangle {
 impl SphericalRectangle {
     /// The rectangle `corner + u·ex + v·ey` seen from `from`.
     ///
-    /// `None` when `ex` and `ey` are not perpendicular, when the solid angle is below [`MIN_SOLID_ANGLE`] or not finite (a degenerate rectangle, or one seen edge
-    /// on): the caller then samples by area, and must take the density of that for MIS too.
+    /// `None` when `ex` and `ey` are not perpendicular, or when the solid angle is below [`MIN_SOLID_ANGLE`] or not finite (a
+    /// degenerate rectangle, or one seen edge on): the caller then samples by area, and must take the density of that for MIS
+    /// too.
     pub fn new(corner: Vec3, ex: Vec3, ey: Vec3, from: Vec3) -> Option<Self> {
         let (ex, ey) = (ex.as_dvec3(), ey.as_dvec3());
         let (width, height) = (ex.length(), ey.length());

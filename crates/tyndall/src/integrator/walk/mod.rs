@@ -8,12 +8,12 @@
 //! light is sampled with probability
 //!
 //! ```text
-//! q = min(1, k exp(−min σ_t · c)),   k = 3
+//! q = exp(−min σ_t · c)
 //! ```
 //!
 //! and counts as a technique of density `q p_light`: what it finds is divided by `q p_light + p_phase T`, what the path
 //! runs into by the same (the balance heuristic). `q` depends on what the path has been through and on nothing that is
-//! drawn later, so both together stay unbiased whatever `k` is.
+//! drawn later, so both together stay unbiased.
 //!
 //! **Weights.** In a homogeneous medium the weight of `n` collisions after flights of total length `L` is
 //! `σ_s^n exp(−σ_t L)` in each lane, so a walk carries `n` and `L`, and the lanes are settled where it ends
@@ -26,7 +26,7 @@
 mod step;
 pub(crate) mod together;
 
-pub(crate) use step::light_odds;
+use step::light_odds;
 
 use crate::{
     math::{Vec3, rounding::gamma},

@@ -7,13 +7,10 @@ use crate::{
     sampling::rng::{positive, unit},
 };
 
-/// `k` of [`super`]: light samples are certain where the transmittance may be above 1/3.
-pub(super) const ODDS: f32 = 1.0;
-
 /// The probability of a light sample where the transmittance to any light is at most `exp(−tau)`.
 #[inline(always)]
-pub(crate) fn light_odds(tau: f32) -> f32 {
-    (ODDS * fast::exp(-tau)).min(1.0)
+pub(super) fn light_odds(tau: f32) -> f32 {
+    fast::exp(-tau).min(1.0)
 }
 
 pub(super) const GOES_ON: u32 = 0;

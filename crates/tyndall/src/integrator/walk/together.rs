@@ -9,27 +9,27 @@ use crate::{math::Vec3, medium::MediumId, phase::Phase, sampling::Rng};
 /// Lanes: what the widest instruction set does at once.
 pub(crate) const WIDTH: usize = 16;
 
-/// Runs the walks of a school for one model of phase functions.
-macro_rules! swim {
-    ($school:expr, $level:expr, $model:expr, $least:expr, $ended:expr) => {
-        if $school.lit {
-            dispatch!($level, simd => $school.run::<_, true>(simd, |u| $model.sample(u), $least, &mut $ended))
+/// Advances walks with one model of phase functions.
+macro_rules! advance {
+    ($walks:expr, $level:expr, $model:expr, $least:expr, $ended:expr) => {
+        if $walks.lit {
+            dispatch!($level, simd => $walks.run::<_, true>(simd, |u| $model.sample(u), $least, &mut $ended))
         } else {
-            dispatch!($level, simd => $school.run::<_, false>(simd, |u| $model.sample(u), $least, &mut $ended))
+            dispatch!($level, simd => $walks.run::<_, false>(simd, |u| $model.sample(u), $least, &mut $ended))
         }
     };
 }
 
 /// Walks under way in one medium, each with the number of its path.
 #[derive(Debug)]
-pub(crate) struct School {
+pub(crate) struct Walks {
     level: Level,
     medium: MediumId,
     lit: bool,
     waiting: Vec<(u32, Walker)>,
 }
 
-impl School {
+impl Walks {
     pub(crate) fn new(medium: MediumId, lit: bool) -> Self {
         Self { level: Level::new(), medium, lit, waiting: Vec::new() }
     }
@@ -47,14 +47,14 @@ impl School {
     }
 
     /// Walks until fewer than `least` walks are under way, and tells `ended` of each that ends.
-    pub(crate) fn swim(&mut self, phase: &Phase, least: usize, mut ended: impl FnMut(u32, &Walker, End)) {
+    pub(crate) fn advance(&mut self, phase: &Phase, least: usize, mut ended: impl FnMut(u32, &Walker, End)) {
         let level = self.level;
         match phase {
-            Phase::Isotropic(model) => swim!(self, level, model, least, ended),
-            Phase::HenyeyGreenstein(model) => swim!(self, level, model, least, ended),
-            Phase::Rayleigh(model) => swim!(self, level, model, least, ended),
-            Phase::Tabulated(model) => swim!(self, level, model, least, ended),
-            Phase::Blend(model) => swim!(self, level, model, least, ended),
+            Phase::Isotropic(model) => advance!(self, level, model, least, ended),
+            Phase::HenyeyGreenstein(model) => advance!(self, level, model, least, ended),
+            Phase::Rayleigh(model) => advance!(self, level, model, least, ended),
+            Phase::Tabulated(model) => advance!(self, level, model, least, ended),
+            Phase::Blend(model) => advance!(self, level, model, least, ended),
         }
     }
 
@@ -67,8 +67,8 @@ impl School {
         ended: &mut impl FnMut(u32, &Walker, End),
     ) {
         let mut lanes = Lanes::default();
-        let mut swimming = (0..WIDTH).filter(|&lane| self.fill(&mut lanes, lane)).count();
-        while swimming > 0 && swimming + self.waiting.len() >= least {
+        let mut under_way = (0..WIDTH).filter(|&lane| self.fill(&mut lanes, lane)).count();
+        while under_way > 0 && under_way + self.waiting.len() >= least {
             let codes = simd.vectorize(
                 #[inline(always)]
                 || lanes.collide::<LIT>(cosine),
@@ -80,7 +80,7 @@ impl School {
                 let (Some(end), path) = (step::end(code), lanes.path[lane]) else { continue };
                 if path != NOBODY {
                     ended(path, &lanes.get(lane, self.medium, LIT), end);
-                    swimming -= usize::from(!self.fill(&mut lanes, lane));
+                    under_way -= usize::from(!self.fill(&mut lanes, lane));
                 }
             }
         }
@@ -221,16 +221,16 @@ mod tests {
         let medium = MediumId(0);
         for phase in &phases {
             for (lit, level) in [true, false].into_iter().flat_map(|lit| levels().map(move |level| (lit, level))) {
-                let mut school = School { level, medium, lit, waiting: Vec::new() };
-                (0..100).for_each(|number| school.push(number, walker(number, medium, lit)));
+                let mut walks = Walks { level, medium, lit, waiting: Vec::new() };
+                (0..100).for_each(|number| walks.push(number, walker(number, medium, lit)));
                 let mut ends = 0;
-                school.swim(phase, 1, |number, together, end| {
+                walks.advance(phase, 1, |number, together, end| {
                     let mut alone = walker(number, medium, lit);
                     assert_eq!(alone.alone(phase), end, "{phase:?} {number}");
                     assert_eq!(alone, *together, "{phase:?} {number}");
                     ends += 1;
                 });
-                assert_eq!((ends, school.len()), (100, 0));
+                assert_eq!((ends, walks.len()), (100, 0));
             }
         }
     }
