@@ -1,3 +1,5 @@
+//! What the statistics say of pictures that are the same, and of pictures that are not.
+
 use super::*;
 use tyndall::{
     film::{Crop, Film},
