@@ -360,6 +360,10 @@ impl Recorder<'_> {
 }
 
 impl Detector for Recorder<'_> {
+    fn sees_each_collision(&self) -> bool {
+        false
+    }
+
     fn collide(&mut self, c: &Collision) {
         self.totals[3] += c.absorbed;
     }

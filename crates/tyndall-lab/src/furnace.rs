@@ -205,6 +205,10 @@ struct Recorder<'a> {
 }
 
 impl Detector for Recorder<'_> {
+    fn sees_each_collision(&self) -> bool {
+        false
+    }
+
     fn collide(&mut self, c: &Collision) {
         let media = 2 + self.scene.materials.len();
         let medium = c.medium.map_or(self.scene.media.len(), |id| id.0 as usize);

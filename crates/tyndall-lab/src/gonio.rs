@@ -324,6 +324,10 @@ struct Recorder {
 }
 
 impl Detector for Recorder {
+    fn sees_each_collision(&self) -> bool {
+        false
+    }
+
     fn leave(&mut self, photon: &Photon) {
         let dir = photon.dir();
         let weight = photon.weight();

@@ -4,12 +4,19 @@
 //! where light enters a denser body; a photon carries power, which is not. [`Photon::weight`] undoes the compression.
 //! There are no lights in an experiment, so a path's response to an event is the walk and nothing else.
 
+use std::ops::Range;
+
 use tyndall::{
-    integrator::volpath::Status,
-    integrator::{CameraSample, VolPath},
+    integrator::{
+        CameraSample, VolPath,
+        pool::{self, Crew},
+        volpath::Status,
+        walk::{End, Walker},
+    },
     math::{Ray, Vec3},
     medium::MediumId,
     path::{Event, Path},
+    phase::Phase,
     sampling::{Sampler, SamplerKind},
     scene::Scene,
     shape::Interaction,
@@ -17,7 +24,7 @@ use tyndall::{
     tally::Tally,
 };
 
-use crate::run::{Sums, Verdict, photons_of, run};
+use crate::run::{BATCH, Sums, Verdict, photons_of, run_together};
 
 /// A photon on its way.
 #[derive(Debug)]
@@ -52,6 +59,11 @@ pub struct Collision {
 
 /// What looks at photons.
 pub trait Detector {
+    /// Whether it must know of every collision. What need not is told those deep inside a medium together, as one that
+    /// absorbs what all of them do, where the last one was.
+    fn sees_each_collision(&self) -> bool {
+        true
+    }
     /// A photon collides.
     fn collide(&mut self, _collision: &Collision) {}
     /// A photon has met a surface, and has lost so much of its power there \[1\]; roulette counts too, in the mean as
@@ -94,6 +106,9 @@ impl Photon {
     }
 }
 
+/// Batches whose photons are followed together, so that deep inside a medium no lane waits for the last of them.
+const TOGETHER: u64 = 8;
+
 /// An experiment: launches photons in batches, each along the ray of its number, past a detector that starts anew with
 /// every batch, until there are `photons` or `look` has seen enough.
 pub(crate) fn shoot<D: Detector>(
@@ -104,52 +119,104 @@ pub(crate) fn shoot<D: Detector>(
     detector: impl Fn() -> D + Sync,
     look: impl FnMut(&Sums) -> Verdict,
 ) -> Sums {
-    let batch = |number| {
-        let (mut detector, mut tally) = (detector(), Tally::default());
-        for photon in photons_of(number) {
-            launch(scene, ray(photon), photon, seed, &mut detector, &mut tally);
-        }
-        (detector.totals(), tally)
+    let batches = |numbers: Range<u64>| {
+        let mut crew = Experimenters {
+            scene,
+            settings: VolPath::default(),
+            desks: numbers.clone().map(|_| (detector(), Tally { paths: BATCH, ..Tally::default() })).collect(),
+        };
+        let photons = numbers.enumerate().flat_map(|(desk, batch)| photons_of(batch).map(move |photon| (desk, photon)));
+        let launched = photons.map(|(desk, photon)| (desk, Photon::launch(scene, ray(photon), photon, seed)));
+        pool::follow(scene, &mut crew, launched, &mut Tally::default());
+        crew.desks.into_iter().map(|(detector, tally)| (detector.totals(), tally)).collect()
     };
-    run(detector().totals().len(), photons, batch, look)
+    run_together(detector().totals().len(), photons, TOGETHER, batches, look)
 }
 
-/// Launches the photon number `index` along `ray` and follows it to its end.
-pub fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64, detector: &mut impl Detector, tally: &mut Tally) {
-    let sampler = Sampler::new(SamplerKind::Independent, (index as u32, (index >> 32) as u32), 0, seed);
-    let seen = CameraSample { ray, wavelengths: Wavelengths::Mono, u_hero: 0.0, sampler };
-    let path = Path::new(scene, &seen);
-    let mut photon = Photon { at_surface: ray.origin, met: None, path, travelled: 0.0, launched: ray.dir };
-    // There are no lights to find.
-    let (walk, mut nothing) = (VolPath::default(), Lanes::ZERO);
-    tally.paths += 1;
-    loop {
-        let (weight, from, order) = (photon.weight(), photon.path.ray.origin, photon.order());
-        let medium = photon.path.inside.id();
-        let event = photon.path.next_event(scene, tally);
-        let p = match &event {
-            Event::Escape => return detector.leave(&photon),
-            Event::Surface(hit) => hit.p,
-            Event::Scatter { p, .. } | Event::Absorb { p, .. } => *p,
-        };
-        photon.travelled += f64::from((p - from).length());
-        match event {
-            Event::Surface(hit) => (photon.at_surface, photon.met) = (p, Some(hit)),
-            Event::Scatter { .. } => {
-                let absorbed = weight - photon.weight();
-                detector.collide(&Collision { p, weight, absorbed, travelled: photon.travelled, order, medium });
+/// Those who follow the photons of an experiment.
+struct Experimenters<'a, D> {
+    scene: &'a Scene,
+    settings: VolPath,
+    /// Of each batch the detector, and what happened to its photons.
+    desks: Vec<(D, Tally)>,
+}
+
+impl<D: Detector> Crew for Experimenters<'_, D> {
+    /// A photon with the number of its desk.
+    type Member = (usize, Photon);
+
+    fn advance(&mut self, (desk, photon): &mut Self::Member, _: &mut Tally) -> Option<Walker> {
+        let (detector, tally) = &mut self.desks[*desk];
+        photon.advance(self.scene, &self.settings, detector, tally)
+    }
+
+    fn end_walk(&mut self, (desk, photon): &mut Self::Member, walker: &Walker, end: End, phase: &Phase, _: &mut Tally) {
+        let (detector, tally) = &mut self.desks[*desk];
+        photon.end_walk(walker, end, phase, detector, tally);
+    }
+}
+
+impl Photon {
+    /// The photon number `index`, on its way along `ray`.
+    fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64) -> Self {
+        let sampler = Sampler::new(SamplerKind::Independent, (index as u32, (index >> 32) as u32), 0, seed);
+        let seen = CameraSample { ray, wavelengths: Wavelengths::Mono, u_hero: 0.0, sampler };
+        Self { at_surface: ray.origin, met: None, path: Path::new(scene, &seen), travelled: 0.0, launched: ray.dir }
+    }
+
+    /// Goes on to where a walk begins of which the detector need not know every step, or to the end.
+    fn advance(
+        &mut self,
+        scene: &Scene,
+        settings: &VolPath,
+        detector: &mut impl Detector,
+        tally: &mut Tally,
+    ) -> Option<Walker> {
+        let mut nothing = Lanes::ZERO; // There are no lights to find.
+        loop {
+            let (weight, from, order) = (self.weight(), self.path.ray.origin, self.order());
+            let medium = self.path.inside.id();
+            let event = self.path.next_event(scene, tally);
+            let p = match &event {
+                Event::Escape => {
+                    detector.leave(self);
+                    return None;
+                }
+                Event::Surface(hit) => hit.p,
+                Event::Scatter { p, .. } | Event::Absorb { p, .. } => *p,
+            };
+            self.travelled += f64::from((p - from).length());
+            let travelled = self.travelled;
+            match event {
+                Event::Surface(hit) => (self.at_surface, self.met) = (p, Some(hit)),
+                Event::Scatter { .. } => {
+                    let absorbed = weight - self.weight();
+                    detector.collide(&Collision { p, weight, absorbed, travelled, order, medium });
+                }
+                _ => detector.collide(&Collision { p, weight, absorbed: weight, travelled, order, medium }),
             }
-            _ => {
-                let travelled = photon.travelled;
-                detector.collide(&Collision { p, weight, absorbed: weight, travelled, order, medium });
+            let status = self.path.respond(event, scene, settings, &mut nothing, tally);
+            if let Event::Surface(hit) = &event {
+                detector.meet(hit, weight - if status == Status::Done { 0.0 } else { self.weight() });
+            }
+            if status == Status::Done || detector.is_done(self.order()) {
+                return None;
+            }
+            if !detector.sees_each_collision()
+                && let Some(walker) = self.path.begin_walk(settings)
+            {
+                return Some(walker);
             }
         }
-        let status = photon.path.respond(event, scene, &walk, &mut nothing, tally);
-        if let Event::Surface(hit) = &event {
-            detector.meet(hit, weight - if status == Status::Done { 0.0 } else { photon.weight() });
-        }
-        if status == Status::Done || detector.is_done(photon.order()) {
-            return;
-        }
+    }
+
+    /// Comes back from a walk: its collisions are told as one.
+    fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, detector: &mut impl Detector, tally: &mut Tally) {
+        let (weight, order) = (self.weight(), self.order());
+        self.path.end_walk(walker, end, phase, tally);
+        self.travelled += f64::from(walker.length);
+        let (absorbed, travelled) = (weight - self.weight(), self.travelled);
+        let medium = Some(walker.medium);
+        detector.collide(&Collision { p: walker.p, weight, absorbed, travelled, order, medium });
     }
 }

@@ -5,6 +5,8 @@
 //! streams of random numbers by their number, and are summed in order: figures depend on the seed and on the number of
 //! photons, and on nothing else.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use serde::Serialize;
 use tyndall::tally::Tally;
@@ -94,14 +96,28 @@ pub fn run(
     quantities: usize,
     photons: u64,
     batch: impl Fn(u64) -> Batch + Sync,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Sums {
+    run_together(quantities, photons, 1, |numbers| numbers.map(&batch).collect(), look)
+}
+
+/// Runs batches, `batches(n..m)` being those of numbers n to m (as many as are done `together`, or fewer), until `photons`
+/// have been launched or `look`, which sees the sums after every round, has seen enough.
+pub fn run_together(
+    quantities: usize,
+    photons: u64,
+    together: u64,
+    batches: impl Fn(Range<u64>) -> Vec<Batch> + Sync,
     mut look: impl FnMut(&Sums) -> Verdict,
 ) -> Sums {
-    let batches = photons.div_ceil(BATCH).max(2);
+    let last = photons.div_ceil(BATCH).max(2);
     let mut sums = Sums::new(quantities);
-    while sums.batches < batches {
-        let round = sums.batches..(sums.batches + ROUND).min(batches);
-        let done: Vec<Batch> = round.into_par_iter().map(&batch).collect();
-        for batch in &done {
+    while sums.batches < last {
+        let (start, end) = (sums.batches, (sums.batches + ROUND).min(last));
+        let parts = (0..(end - start).div_ceil(together)).into_par_iter();
+        let part = |i: u64| start + i * together..(start + (i + 1) * together).min(end);
+        let done: Vec<Vec<Batch>> = parts.map(|i| batches(part(i))).collect();
+        for batch in done.iter().flatten() {
             sums.add(batch);
         }
         if look(&sums) == Verdict::Enough && sums.batches >= 2 {
@@ -112,6 +128,6 @@ pub fn run(
 }
 
 /// The photons of a batch by their numbers.
-pub fn photons_of(batch: u64) -> std::ops::Range<u64> {
+pub fn photons_of(batch: u64) -> Range<u64> {
     batch * BATCH..(batch + 1) * BATCH
 }

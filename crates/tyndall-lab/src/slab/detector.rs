@@ -129,6 +129,10 @@ impl<'a> Recorder<'a> {
 }
 
 impl Detector for Recorder<'_> {
+    fn sees_each_collision(&self) -> bool {
+        !self.layout.depth.is_empty()
+    }
+
     fn collide(&mut self, c: &Collision) {
         let depth = -f64::from(c.p.z);
         let layer = self.ends.partition_point(|end| *end <= depth).min(self.ends.len() - 1);

@@ -304,6 +304,29 @@ mod tests {
         assert_eq!(m.transmittance.mean, 0.0);
     }
 
+    /// Photons deep inside walk together where nobody asks for their depths, and one by one with a ray for each flight where
+    /// somebody does: both find the same light, by order and by the length of its way too.
+    #[test]
+    fn walks_find_the_light_that_rays_find() {
+        let tissue = Substance { sigma_a: 0.05, sigma_s: 10.0, g: 0.8, n: 1.4 };
+        let bins = Bins { orders: 200, lengths: Edges::uniform(8, 2.0), ..Bins::default() };
+        let walked = Setup { bins, ..Setup::one(tissue, 8.0, Incidence::Beam(1.0)) };
+        let mut traced = walked.clone();
+        traced.bins.depths = Edges::uniform(4, 2.0);
+        let [walked, traced] =
+            [(walked, 1), (traced, 2)].map(|(setup, seed)| measure(&setup, 60_000, seed, enough).unwrap());
+        let late = |m: &Measured| m.reflectance_by_order[50..].iter().map(|e| e.mean).sum::<f64>();
+        assert!(late(&walked) > 0.05, "most of this light has walked");
+        let figures = |m: &Measured| {
+            let by_length = [&m.reflectance_by_length[..], &m.transmittance_by_length[6..]].concat();
+            [&[m.diffuse, m.transmittance, m.absorbed[0]][..], &by_length, &m.reflectance_by_order[60..64]].concat()
+        };
+        let z = |(a, b): (Estimate, Estimate)| (a.mean - b.mean) / a.standard_error.hypot(b.standard_error);
+        let zs: Vec<f64> = figures(&walked).into_iter().zip(figures(&traced)).map(z).collect();
+        // Of 17 figures one is beyond 3.6 once in 180 times.
+        assert!(zs.iter().all(|z| z.abs() < 3.6), "{zs:?}");
+    }
+
     /// A sheet of glass without absorption: both faces reflect r = ((n − 1)/(n + 1))², together 2r/(1 + r), and nothing is
     /// diffuse.
     #[test]

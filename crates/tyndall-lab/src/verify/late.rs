@@ -35,6 +35,10 @@ struct Recorder {
 }
 
 impl Detector for Recorder {
+    fn sees_each_collision(&self) -> bool {
+        false
+    }
+
     fn leave(&mut self, photon: &Photon) {
         if photon.dir().z < 0.0 {
             return;

@@ -1,12 +1,17 @@
 //! The workhorse: unidirectional path tracing of surfaces and homogeneous media, with light sampling at every vertex
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
-use super::{CameraSample, Integrator, pool};
+use super::{
+    CameraSample, Integrator,
+    pool::{self, Crew},
+    walk::{End, Walker},
+};
 use crate::{
     light::{Light, Reference},
     material::Material,
     medium::{Inside, Skin, Within},
     path::{Attempt, Event, History, Path, Vertex, shadow},
+    phase::Phase,
     scene::Scene,
     shape::Interaction,
     spectrum::{Lanes, Wavelengths},
@@ -92,9 +97,38 @@ impl Integrator for VolPath {
 
     fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
         if self.deep == Deep::Together && !scene.media.is_empty() {
-            return pool::estimate(scene, self, samples, tally);
+            let mut estimates = Estimates { scene, settings: self, radiance: vec![Lanes::ZERO; samples.len()] };
+            let paths = samples.iter().map(|seen| Path::new(scene, seen)).enumerate();
+            pool::follow(scene, &mut estimates, paths, tally);
+            return estimates.radiance;
         }
         samples.iter().map(|seen| self.li(scene, seen, tally)).collect()
+    }
+}
+
+/// Radiance along many camera rays, by paths that are under way together.
+struct Estimates<'a> {
+    scene: &'a Scene,
+    settings: &'a VolPath,
+    radiance: Vec<Lanes>,
+}
+
+impl Crew for Estimates<'_> {
+    /// A path with the number of its camera ray.
+    type Member = (usize, Path);
+
+    fn advance(&mut self, (sample, path): &mut Self::Member, tally: &mut Tally) -> Option<Walker> {
+        let radiance = &mut self.radiance[*sample];
+        while path.step(self.scene, self.settings, radiance, tally) == Status::Alive {
+            if let Some(walker) = path.begin_walk(self.settings) {
+                return Some(walker);
+            }
+        }
+        None
+    }
+
+    fn end_walk(&mut self, (_, path): &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
+        path.end_walk(walker, end, phase, tally);
     }
 }
 

@@ -10,7 +10,6 @@ use crate::{
     math::{Ray, Vec3},
     medium::Inside,
     phase::Phase,
-    sampling::Sampler,
     scene::Scene,
     spectrum::Lanes,
     tally::Tally,
@@ -112,9 +111,9 @@ impl Path {
 
     /// Begins a walk, if there is room for one.
     #[inline]
-    pub(crate) fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
+    pub fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
         let Surroundings { depths: Some(depths), ball, left: Left::Nothing, .. } = self.around else { return None };
-        if !depths.is_roomy(ball.room(self.ray.origin)) || self.history.vertices < Sampler::STRATIFIED_VERTICES {
+        if !depths.is_roomy(ball.room(self.ray.origin)) || self.sampler.is_stratified(self.history.vertices) {
             return None;
         }
         let allowed = settings.max_depth.map_or(u32::MAX, |limit| limit.saturating_sub(self.history.depth()));
@@ -137,7 +136,7 @@ impl Path {
 
     /// Comes back from a walk.
     #[inline]
-    pub(crate) fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
+    pub fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
         let Some(depths) = self.around.depths else { return };
         tally.collisions += u64::from(walker.collisions);
         self.ray = Ray::new(walker.p, walker.dir);

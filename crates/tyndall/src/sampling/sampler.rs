@@ -59,6 +59,12 @@ impl Sampler {
         if vertex < Self::STRATIFIED_VERTICES { self.block(2 + 4 * vertex as i32 + purpose) } else { self.random() }
     }
 
+    /// Whether numbers at vertex `vertex` come from low-discrepancy points.
+    #[inline]
+    pub fn is_stratified(&self, vertex: u32) -> bool {
+        vertex < Self::STRATIFIED_VERTICES && self.points.is_some()
+    }
+
     /// Written as a loop: closures over arrays are not always inlined.
     #[inline]
     fn random<const N: usize>(&mut self) -> [f32; N] {
@@ -84,7 +90,7 @@ impl Sampler {
     /// Free flight before vertex `vertex`, in `(0, 1]`.
     #[inline]
     pub fn flight(&mut self, vertex: u32) -> f32 {
-        if vertex < Self::STRATIFIED_VERTICES && self.points.is_some() {
+        if self.is_stratified(vertex) {
             let [u] = self.vertex_block(vertex, 0);
             1.0 - u
         } else {
