@@ -360,8 +360,8 @@ impl Recorder<'_> {
 }
 
 impl Detector for Recorder<'_> {
-    fn sees_each_collision(&self) -> bool {
-        false
+    fn awaits(&self, _order: u32) -> u32 {
+        u32::MAX
     }
 
     fn collide(&mut self, c: &Collision) {

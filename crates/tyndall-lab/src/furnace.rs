@@ -205,8 +205,8 @@ struct Recorder<'a> {
 }
 
 impl Detector for Recorder<'_> {
-    fn sees_each_collision(&self) -> bool {
-        false
+    fn awaits(&self, _order: u32) -> u32 {
+        u32::MAX
     }
 
     fn collide(&mut self, c: &Collision) {

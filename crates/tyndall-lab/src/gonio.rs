@@ -324,8 +324,8 @@ struct Recorder {
 }
 
 impl Detector for Recorder {
-    fn sees_each_collision(&self) -> bool {
-        false
+    fn awaits(&self, _order: u32) -> u32 {
+        u32::MAX
     }
 
     fn leave(&mut self, photon: &Photon) {

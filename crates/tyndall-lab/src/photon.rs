@@ -38,6 +38,8 @@ pub struct Photon {
     pub travelled: f64,
     /// In which direction it was sent.
     pub launched: Vec3,
+    /// The power that it brought to the collision that a walk has ended at, which is an event still to come \[1\].
+    brought: Option<f64>,
 }
 
 /// A collision.
@@ -59,10 +61,10 @@ pub struct Collision {
 
 /// What looks at photons.
 pub trait Detector {
-    /// Whether it must know of every collision. What need not is told those deep inside a medium together, as one that
-    /// absorbs what all of them do, where the last one was.
-    fn sees_each_collision(&self) -> bool {
-        true
+    /// The number of the next collision, `order` or a later one, that it has to see for itself. Those before it that are deep
+    /// inside a medium are told together, as one that absorbs what all of them do.
+    fn awaits(&self, order: u32) -> u32 {
+        order
     }
     /// A photon collides.
     fn collide(&mut self, _collision: &Collision) {}
@@ -161,7 +163,14 @@ impl Photon {
     fn launch(scene: &Scene, ray: Ray, index: u64, seed: u64) -> Self {
         let sampler = Sampler::new(SamplerKind::Independent, (index as u32, (index >> 32) as u32), 0, seed);
         let seen = CameraSample { ray, wavelengths: Wavelengths::Mono, u_hero: 0.0, sampler };
-        Self { at_surface: ray.origin, met: None, path: Path::new(scene, &seen), travelled: 0.0, launched: ray.dir }
+        Self {
+            at_surface: ray.origin,
+            met: None,
+            path: Path::new(scene, &seen),
+            travelled: 0.0,
+            launched: ray.dir,
+            brought: None,
+        }
     }
 
     /// Goes on to where a walk begins of which the detector need not know every step, or to the end.
@@ -174,7 +183,8 @@ impl Photon {
     ) -> Option<Walker> {
         let mut nothing = Lanes::ZERO; // There are no lights to find.
         loop {
-            let (weight, from, order) = (self.weight(), self.path.ray.origin, self.order());
+            let weight = self.brought.take().unwrap_or(self.weight());
+            let (from, order) = (self.path.ray.origin, self.order());
             let medium = self.path.inside.id();
             let event = self.path.next_event(scene, tally);
             let p = match &event {
@@ -202,21 +212,29 @@ impl Photon {
             if status == Status::Done || detector.is_done(self.order()) {
                 return None;
             }
-            if !detector.sees_each_collision()
-                && let Some(walker) = self.path.begin_walk(settings)
+            let unseen = detector.awaits(self.order()) - self.order();
+            if unseen > 0
+                && let Some(mut walker) = self.path.begin_walk(settings)
             {
+                walker.limit = walker.limit.min(unseen.saturating_add(1));
                 return Some(walker);
             }
         }
     }
 
-    /// Comes back from a walk: its collisions are told as one.
+    /// Comes back from a walk: all collisions that are no event any more are told as one.
     fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, detector: &mut impl Detector, tally: &mut Tally) {
         let (weight, order) = (self.weight(), self.order());
         self.path.end_walk(walker, end, phase, tally);
         self.travelled += f64::from(walker.length);
-        let (absorbed, travelled) = (weight - self.weight(), self.travelled);
-        let medium = Some(walker.medium);
-        detector.collide(&Collision { p: walker.p, weight, absorbed, travelled, order, medium });
+        let is_event = end != End::Leaves;
+        let told = walker.collisions - u32::from(is_event);
+        // Every collision of a walk leaves the same part of the power.
+        let left = weight * (self.weight() / weight).powf(f64::from(told) / f64::from(walker.collisions.max(1)));
+        self.brought = is_event.then_some(left);
+        if told > 0 {
+            let (absorbed, travelled, medium) = (weight - left, self.travelled, Some(walker.medium));
+            detector.collide(&Collision { p: walker.p, weight, absorbed, travelled, order, medium });
+        }
     }
 }

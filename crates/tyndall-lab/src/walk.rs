@@ -37,6 +37,7 @@ struct Recorder<'a> {
 
 impl Detector for Recorder<'_> {
     fn collide(&mut self, c: &Collision) {
+        // Collisions told together bear the number of their first, which is none of these.
         if let Some(i) = self.flights.iter().position(|n| *n == c.order + 1) {
             let p = c.p.as_dvec3();
             for (quantity, value) in [p.z, p.length_squared(), p.z * p.z].into_iter().enumerate() {
@@ -47,6 +48,11 @@ impl Detector for Recorder<'_> {
 
     fn totals(self) -> Vec<f64> {
         self.totals
+    }
+
+    fn awaits(&self, order: u32) -> u32 {
+        // The n-th flight ends at collision n − 1.
+        self.flights.iter().map(|n| n - 1).filter(|next| *next >= order).min().unwrap_or(u32::MAX)
     }
 
     fn is_done(&self, order: u32) -> bool {

@@ -129,8 +129,8 @@ impl<'a> Recorder<'a> {
 }
 
 impl Detector for Recorder<'_> {
-    fn sees_each_collision(&self) -> bool {
-        !self.layout.depth.is_empty()
+    fn awaits(&self, order: u32) -> u32 {
+        if self.layout.depth.is_empty() { u32::MAX } else { order }
     }
 
     fn collide(&mut self, c: &Collision) {

@@ -125,7 +125,7 @@ impl Effort {
     /// Under a minute on two cores.
     pub const QUICK: Self = Self { photons: 20_000, every: 4, error: 0.0, seed: 0, defect: None };
     /// To a standard error of 0.1 % of what is sent in, or better.
-    pub const FULL: Self = Self { photons: 1_000_000, every: 1, error: 7e-4, seed: 0, defect: None };
+    pub const FULL: Self = Self { photons: 1_000_000, every: 1, error: 1e-3, seed: 0, defect: None };
 
     /// `times` the photons, for an experiment whose figures share them, or whose photons are soon done.
     pub(super) fn times(self, times: u64) -> Self {
