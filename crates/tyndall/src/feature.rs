@@ -6,7 +6,7 @@
 use crate::{
     bsdf::Bsdf,
     camera::CameraRay,
-    math::{Transform, Vec2, Vec3},
+    math::{Ray, Transform, Vec2, Vec3},
     path::Vertex,
     sampling::Sampler,
     scene::Scene,
@@ -29,6 +29,9 @@ pub enum Feature {
     Uv,
     /// Derivative of the place by u [length].
     DpDu,
+    /// Derivatives of the z of the place, over the plane that touches the surface, by the column and by the row of the image
+    /// [length/pixel].
+    DzDxy(Space),
     /// Index of the part of an object: a triangle of a mesh.
     Primitive,
     /// Index of the object.
@@ -60,15 +63,18 @@ pub enum Facing {
 pub struct FirstHit<'a> {
     scene: &'a Scene,
     ray: CameraRay,
+    pixel: (u32, u32),
+    u: [f32; 4],
     hit: Option<(f32, Interaction)>,
 }
 
 impl<'a> FirstHit<'a> {
-    /// Follows the ray.
-    pub fn of(scene: &'a Scene, ray: CameraRay) -> Self {
+    /// Follows the ray that the camera of the scene has for a pixel and four uniform numbers.
+    pub fn of(scene: &'a Scene, pixel: (u32, u32), u: [f32; 4]) -> Self {
+        let ray = scene.camera.sample_ray(pixel, u);
         let found = scene.first_surface(&ray.ray, f32::INFINITY);
         let hit = found.map(|hit| (hit.t, scene.geometry.interaction(&ray.ray, &hit)));
-        Self { scene, ray, hit }
+        Self { scene, ray, pixel, u, hit }
     }
 
     /// A sample of a feature, with the weight of the camera's.
@@ -85,11 +91,35 @@ impl<'a> FirstHit<'a> {
             }
             Feature::Uv => [hit.uv.x, hit.uv.y, 0.0],
             Feature::DpDu => hit.dpdu.to_array(),
+            Feature::DzDxy(space) => {
+                let z = match space {
+                    Space::World => Vec3::Z,
+                    // The row of the inverse that makes the z of camera space.
+                    Space::Camera => to_world.inverse.transpose().z_axis.truncate(),
+                };
+                let [x, y] = self.slopes(hit).map(|dp| dp.dot(z));
+                [x, y, 0.0]
+            }
             Feature::Primitive => [hit.prim as f32, 0.0, 0.0],
             Feature::Object => [hit.object.0 as f32, 0.0, 0.0],
             Feature::Albedo => self.albedo(hit, wavelengths, sampler),
         };
         [x, y, z, 1.0].map(|v| v * self.ray.weight)
+    }
+
+    /// Derivatives of the place by column and row. The ray `o + t d` of a pixel beside this one meets the plane through `p`
+    /// with the normal `n` where `n · (o + t d − p) = 0`, so `∂p = ∂o + t ∂d − d (n · (∂o + t ∂d)) / (n · d)`.
+    fn slopes(&self, hit: &Interaction) -> [Vec3; 2] {
+        let Ray { origin, dir } = self.ray.ray;
+        let t = (hit.p - origin).dot(dir);
+        [Vec2::X, Vec2::Y].map(|side| {
+            let [before, after] =
+                [-0.5, 0.5].map(|step| self.scene.camera.ray_beside(self.pixel, self.u, side * step).ray);
+            let swept = (after.origin - before.origin) + (after.dir - before.dir) * t;
+            let along = swept.dot(hit.ng) / dir.dot(hit.ng);
+            // Beyond the edge of what a camera sees there are no rays to compare with.
+            Some(swept - dir * along).filter(|dp| dp.is_finite()).unwrap_or(Vec3::ZERO)
+        })
     }
 
     /// That of the relief, if there is one.

@@ -240,7 +240,8 @@ impl Seen {
                 Recorded::Light(bands) => bands.sample(radiance, wavelengths).map(|v| v * self.weight),
                 Recorded::Surface(feature) => {
                     let first = first.get_or_insert_with(|| {
-                        FirstHit::of(scene, CameraRay { ray: self.sample.ray, weight: self.weight })
+                        let mut places = self.sample.sampler;
+                        FirstHit::of(scene, self.pixel, places.camera())
                     });
                     first.sample(feature, wavelengths, &mut sampler)
                 }

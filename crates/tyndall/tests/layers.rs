@@ -4,16 +4,18 @@ mod common;
 
 use common::{World, diffuse};
 use tyndall::{
-    camera::{CameraModel, Orthographic},
-    feature::{Facing, Feature, Space},
+    camera::{CameraModel, Orthographic, Perspective},
+    feature::{Facing, Feature, FirstHit, Space},
     film::{Average, Crop, Film, LayerKind, Recorded},
     integrator::VolPath,
     math::Vec3,
     render::{Settings, render},
+    sampling::{Sampler, SamplerKind},
     scene::Scene,
+    spectrum::Wavelengths,
 };
 
-const ALL: [Feature; 9] = [
+const ALL: [Feature; 10] = [
     Feature::Depth,
     Feature::Position(Space::World),
     Feature::Position(Space::Camera),
@@ -23,6 +25,7 @@ const ALL: [Feature; 9] = [
     Feature::Object,
     Feature::Albedo,
     Feature::Uv,
+    Feature::DzDxy(Space::Camera),
 ];
 
 /// Parallel rays along −z, a square of 2 units a side; a unit sphere at the origin of albedo 0.6, before a wall at
@@ -86,12 +89,48 @@ fn features_are_those_of_the_first_surface() {
     assert!(near(value(4, column, row), [0.35, -0.55, -z, 1.0], 0.01));
     assert!(near(value(6, column, row), [0.0, 0.0, 0.0, 1.0], 1e-6));
     assert!(near(value(7, column, row), [0.6, 0.6, 0.6, 1.0], 1e-5));
+    // On the sphere z falls off by x/z and y/z, over 0.1 units a pixel; it is mirrored where x is.
+    let slope = value(9, column, row);
+    assert!((slope[0].abs() - 0.035 / z).abs() < 1e-3 && (slope[1] - 0.055 / z).abs() < 1e-3, "{slope:?}");
     // In the corners: the wall, object 1, at distance 6 on the side where x < 0, and nothing on the other.
     let corner = if value(6, 1, 1)[3] == 1.0 { 1 } else { 38 };
     assert!(near(value(0, corner, 1), [6.0, 0.0, 0.0, 1.0], 1e-4));
     assert!(near(value(6, corner, 1), [1.0, 0.0, 0.0, 1.0], 1e-6));
     assert!(near(value(7, corner, 1), [0.25, 0.25, 0.25, 1.0], 1e-5));
     assert!((0..ALL.len()).all(|layer| value(layer, 39 - corner, 1) == [0.0; 4]));
+}
+
+/// Seen in perspective, `1/z` of a plane is linear over the image: `∂z = −z² ∂(1/z)`, exactly, from the pixels on both sides.
+/// In the space of the world z is another combination, of the same points.
+#[test]
+fn depth_of_a_plane_changes_as_perspective_has_it() {
+    let (eye, target) = (Vec3::new(3.0, 4.0, 5.0), Vec3::new(0.2, 0.0, -0.1));
+    let mut world = World::seen(eye, target);
+    world.camera.view.model = CameraModel::Perspective(Perspective::pinhole([-0.3, 0.3, -0.2, 0.2]));
+    (world.camera.width, world.camera.height) = (60, 40);
+    world.cuboid(Vec3::new(-50.0, -9.0, -50.0), Vec3::new(50.0, 0.0, 50.0), diffuse(0.5), None);
+    let scene = world.scene();
+    let mut sampler = Sampler::new(SamplerKind::Independent, (0, 0), 0, 1);
+    let mut at = |x: u32, y: u32, feature| {
+        let first = FirstHit::of(&scene, (x, y), [0.5; 4]);
+        first.sample(feature, &Wavelengths::Rgb, &mut sampler).map(f64::from)
+    };
+    for (x, y) in [(10, 10), (30, 20), (50, 35), (5, 38)] {
+        let mut place = |x, y| at(x, y, Feature::Position(Space::Camera))[2];
+        let z = place(x, y);
+        let exact = |before, after| -z * z * (1.0 / after - 1.0 / before) / 2.0;
+        let [left, right, above, below] = [place(x - 1, y), place(x + 1, y), place(x, y - 1), place(x, y + 1)];
+        let expected = [exact(left, right), exact(above, below)];
+        let found = at(x, y, Feature::DzDxy(Space::Camera));
+        for side in 0..2 {
+            // Five digits are left of the differences of single numbers.
+            assert!((found[side] - expected[side]).abs() < 2e-4 * z / 40.0, "{x} {y}: {found:?} {expected:?}");
+        }
+        // The plane is y = 0: what the derivative in the world leaves out is small of second order.
+        let step = at(x + 1, y, Feature::Position(Space::World))[2] - at(x - 1, y, Feature::Position(Space::World))[2];
+        let slope = at(x, y, Feature::DzDxy(Space::World))[0];
+        assert!((slope - step / 2.0).abs() < 1e-3 * slope.abs() + 1e-5, "{x} {y}: {slope} {step}");
+    }
 }
 
 /// Half of the samples of a pixel hit something at depth 3: over hits 3, over all 1.5, as a direction 1.
@@ -103,5 +142,10 @@ fn layers_are_averaged_as_they_say() {
     assert_eq!(cell.value(Average::Samples, 2), [1.5, 0.0, 2.0, 0.5]);
     assert_eq!(cell.value(Average::Hits, 2), [3.0, 0.0, 4.0, 1.0]);
     assert_eq!(cell.value(Average::Directions, 2)[..3], [0.6, 0.0, 0.8]);
+    cell.add([-9.0, 0.0, 0.0, 1.0]);
+    assert_eq!(cell.value(Average::Sizes, 3)[..3], [3.0, 0.0, 2.0]);
+    let mut cell = tyndall::film::Cell::default();
+    cell.add([3.0, 0.0, 4.0, 1.0]);
+    cell.add([0.0; 4]);
     assert!((cell.standard_error(2)[0] - 1.5).abs() < 1e-6);
 }

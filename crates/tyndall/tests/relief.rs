@@ -144,8 +144,7 @@ fn the_layer_of_shading_normals_shows_the_relief() {
     plate(&mut world, material);
     world.sky(1.0);
     let scene = world.scene();
-    let ray = scene.camera.view.ray(Vec2::splat(0.4), Vec2::splat(0.5));
-    let first = FirstHit::of(&scene, ray);
+    let first = FirstHit::of(&scene, (0, 0), [0.4, 0.4, 0.5, 0.5]);
     let mut sampler = Sampler::new(SamplerKind::Independent, (0, 0), 0, 1);
     for (feature, expected) in [
         (Feature::ShadingNormal(Space::World, Facing::Outward), Vec3::new(0.6, 0.8, 0.0)),

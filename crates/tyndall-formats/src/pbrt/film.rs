@@ -38,7 +38,8 @@ impl Reader {
             return self.unknown_kind("film", &name, &FILMS, &[]);
         }
         if name.value == "gbuffer" {
-            let reason = "dzdx, dzdy and variances are not written: the layer `stderr` has the standard errors";
+            let reason = "dzdx and dzdy are from pixel to pixel, in pbrt over max(1/8, 1/√spp) of that; for variances the \
+                          layer `stderr` has the standard errors";
             self.ignore(name.span, reason);
         }
         let mut p = self.params("film", &mut s, &[]);

@@ -40,6 +40,7 @@ pub(crate) fn in_space(space: Space) -> Vec<LayerKind> {
         layer(geometric, Average::Directions, &["N.X", "N.Y", "N.Z"]),
         layer(shading, Average::Directions, &["Ns.X", "Ns.Y", "Ns.Z"]),
         layer(Feature::Uv, Average::Hits, &["u", "v"]),
+        layer(Feature::DzDxy(space), Average::Sizes, &["dzdx", "dzdy"]),
     ]
 }
 

@@ -97,8 +97,14 @@ impl Camera {
     /// the place on the lens.
     #[inline]
     pub fn sample_ray(&self, pixel: (u32, u32), u: [f32; 4]) -> CameraRay {
+        self.ray_beside(pixel, u, Vec2::ZERO)
+    }
+
+    /// As [`Self::sample_ray`], from a place on the film that lies beside that ray's by `step` [pixels].
+    #[inline]
+    pub fn ray_beside(&self, pixel: (u32, u32), u: [f32; 4], step: Vec2) -> CameraRay {
         let ([dx, dy], weight) = self.filter.sample([u[0], u[1]]);
-        let (x, y) = (pixel.0 as f32 + 0.5 + dx, pixel.1 as f32 + 0.5 + dy);
+        let (x, y) = (pixel.0 as f32 + 0.5 + dx + step.x, pixel.1 as f32 + 0.5 + dy + step.y);
         let place = Vec2::new(x / self.width as f32, y / self.height as f32);
         let sample = self.view.ray(place, Vec2::new(u[2], u[3]));
         CameraRay { weight: weight * sample.weight, ..sample }

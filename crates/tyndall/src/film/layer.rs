@@ -35,6 +35,8 @@ pub enum Average {
     Hits,
     /// As a direction: the mean, made a unit vector; 0 without any.
     Directions,
+    /// Over the samples that hit something, without its sign; 0 without any.
+    Sizes,
 }
 
 /// The four lanes of a layer in a pixel.
@@ -78,10 +80,11 @@ impl Cell {
     pub fn value(&self, average: Average, count: u64) -> [f32; 4] {
         let by = match average {
             Average::Samples => count as f64,
-            Average::Hits => self.sum[3],
+            Average::Hits | Average::Sizes => self.sum[3],
             Average::Directions => self.sum[..3].iter().map(|v| v * v).sum::<f64>().sqrt(),
         };
-        if by == 0.0 { [0.0; 4] } else { self.sum.map(|v| (v / by) as f32) }
+        let mean = if by == 0.0 { [0.0; 4] } else { self.sum.map(|v| (v / by) as f32) };
+        if average == Average::Sizes { mean.map(f32::abs) } else { mean }
     }
 
     /// Standard error of the mean over all samples.

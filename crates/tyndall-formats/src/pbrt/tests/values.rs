@@ -354,7 +354,7 @@ fn a_gbuffer_has_the_layers_of_pbrt() {
     let names: Vec<_> = film.layers.iter().flat_map(|layer| layer.channels.clone()).collect();
     let wanted = ["Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"];
     assert_eq!(names[..9], wanted);
-    assert_eq!(names[9..], ["Ns.X", "Ns.Y", "Ns.Z", "u", "v"]);
+    assert_eq!(names[9..], ["Ns.X", "Ns.Y", "Ns.Z", "u", "v", "dzdx", "dzdy"]);
 }
 
 /// Bounds may come in any order and reach beyond; a mirroring matrix turns quadrics inside out, as in pbrt.
