@@ -214,3 +214,42 @@ fn every_scene_with_a_line_less_is_written_and_read_again() {
     }
     std::fs::remove_dir_all(dir).unwrap();
 }
+
+/// A body of a PLY file with normals against its winding is on the way to pbrt what it was: lit outside, and its medium
+/// inside. (pbrt takes the side from the normals.)
+#[test]
+fn a_body_with_normals_against_its_winding_is_not_turned_inside_out() {
+    let dir = scratch("winding");
+    let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+    let mut ply = String::from("ply\nformat ascii 1.0\nelement vertex 6\n");
+    for name in ["x", "y", "z", "nx", "ny", "nz"] {
+        ply += &format!("property float {name}\n");
+    }
+    ply += "element face 8\nproperty list uchar int vertex_indices\nend_header\n";
+    for [x, y, z] in corners {
+        ply += &format!("{x} {y} {z} {} {} {}\n", -x, -y, -z);
+    }
+    for octant in 0..8 {
+        let (x, y, z) = (octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2));
+        let is_even = [0, 3, 5, 6].contains(&octant);
+        ply += &(if is_even { format!("3 {x} {y} {z}\n") } else { format!("3 {x} {z} {y}\n") });
+    }
+    std::fs::write(dir.join("body.ply"), ply).unwrap();
+    let xml = r#"<scene version="3.0.0"><integrator type="volpath"/>
+        <sensor type="perspective"><transform name="to_world"><lookat origin="1,2,5" target="0,0,0" up="0,1,0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="16"/>
+        <rfilter type="box"/></film></sensor>
+        <shape type="ply"><string name="filename" value="body.ply"/><bsdf type="dielectric"/>
+        <medium name="interior" type="homogeneous"><rgb name="sigma_t" value="1,2,3"/><rgb name="albedo" value="0.5"/></medium>
+        </shape><emitter type="constant"/></scene>"#;
+    let from = dir.join("scene.xml");
+    std::fs::write(&from, xml).unwrap();
+    let (desc, sources) = read(&from);
+    let there = dir.join("there.pbrt");
+    let written = write(&desc, &sources, &there, Unsupported::Refuse).unwrap_or_else(|e| panic!("{e}"));
+    save(&there, &written);
+    assert_eq!(written.meshes.len(), 1, "the mesh is written anew");
+    let (desc_there, sources_there) = read(&there);
+    assert_eq!(image(&desc, &sources, 16), image(&desc_there, &sources_there, 16));
+    std::fs::remove_dir_all(dir).unwrap();
+}

@@ -19,12 +19,16 @@ use tyndall_formats::{mitsuba, pbrt};
 enum Status {
     Supported,
     /// It is read and changes nothing, or not what the language says.
-    Differs(&'static str),
+    Differs(String),
     NotYet,
 }
 
+/// Stands behind the words that are tyndall's own.
+const OURS: &str = "†";
+
 /// A line of a list: something that has parameters.
 struct Kind<'a> {
+    is_ours: bool,
     directive: &'a str,
     name: &'a str,
     params: Vec<Param<'a>>,
@@ -34,6 +38,7 @@ struct Kind<'a> {
 #[derive(Clone, Copy)]
 struct Param<'a> {
     needed: bool,
+    is_ours: bool,
     /// `float`, `rgb`, …; empty for what is written out.
     tag: &'a str,
     name: &'a str,
@@ -121,6 +126,8 @@ fn mitsuba_scene(kind: &Kind, params: &str) -> String {
         "sensor" if *name == "irradiancemeter" => format!("<shape type=\"sphere\">{this}</shape>"),
         "areaemitter" => format!("<shape type=\"sphere\">{this}</shape>"),
         "phase" => format!("<medium type=\"homogeneous\">{this}</medium>"),
+        // What is passed straight counts differently for a limit on depth.
+        "integrator" => format!("{this}<shape type=\"sphere\"><bsdf type=\"null\"/></shape>"),
         "volume" => {
             let albedo = this.replacen("<volume", "<volume name=\"albedo\"", 1);
             format!("<medium type=\"homogeneous\">{albedo}</medium>")
@@ -146,7 +153,11 @@ impl Language {
         let text: Vec<String> = needed.chain(before).chain(extra.copied()).map(|p| (self.param)(&p)).collect();
         let scene = (self.scene)(kind, &text.join(" "));
         match (self.read)(&scene) {
-            Ok(desc) => desc.ignored.last().map_or(Status::Supported, |word| Status::Differs(word.reason)),
+            Ok(desc) => match (desc.warnings.first(), desc.ignored.last()) {
+                (Some(warning), _) => Status::Differs(warning.message.clone()),
+                (None, Some(word)) => Status::Differs(word.reason.into()),
+                (None, None) => Status::Supported,
+            },
             Err(faults) if faults.errors.iter().all(|e| e.severity == Severity::NotYet) => Status::NotYet,
             Err(faults) => {
                 wrong.push(format!(
@@ -165,21 +176,23 @@ impl Language {
         if status == Status::NotYet {
             return format!("| `{name}` | *not yet* | |\n");
         }
-        let own = if let Status::Differs(reason) = status { format!("{reason}. ") } else { String::new() };
+        let own = if let Status::Differs(reason) = &status { format!("{reason}. ") } else { String::new() };
         let (mut read, mut other) = (Vec::new(), Vec::new());
         for param in kind.params.iter().filter(|p| !p.title().is_empty()) {
             let title = param.title();
+            let mark = if param.is_ours { OURS } else { "" };
             let alone = if param.needed { Status::Supported } else { self.status(kind, Some(param), wrong) };
             match alone {
-                Status::Differs(reason) if Status::Differs(reason) != status => {
+                Status::Differs(ref reason) if alone != status => {
                     other.push(format!("`{title}`: {reason}"));
                 }
-                Status::Supported | Status::Differs(_) => read.push(format!("`{title}`")),
+                Status::Supported | Status::Differs(_) => read.push(format!("`{title}`{mark}")),
                 Status::NotYet => other.push(format!("`{title}`: *not yet*")),
             }
         }
         read.dedup();
-        format!("| `{name}` | {} | {own}{} |\n", read.join(" "), other.join("; "))
+        let mark = if kind.is_ours { OURS } else { "" };
+        format!("| `{name}`{mark} | {} | {own}{} |\n", read.join(" "), other.join("; "))
     }
 
     fn section(&self, page: &mut String, wrong: &mut Vec<String>) {
@@ -204,8 +217,14 @@ impl<'a> Kind<'a> {
     /// `Shape sphere; float radius; float zmin=-0.5`.
     fn read(line: &'a str) -> Option<Self> {
         let mut parts = line.split("; ");
-        let (directive, name) = parts.next()?.split_once(' ')?;
-        Some(Self { directive, name, params: parts.map(Param::read).collect::<Option<_>>()? })
+        let line = parts.next()?;
+        let (directive, name) = line.trim_start_matches('+').split_once(' ')?;
+        Some(Self {
+            is_ours: line.starts_with('+'),
+            directive,
+            name,
+            params: parts.map(Param::read).collect::<Option<_>>()?,
+        })
     }
 }
 
@@ -214,14 +233,15 @@ impl<'a> Param<'a> {
         if let Some((before, text)) = text.split_once(" & ") {
             return Some(Self { after: Some(before), ..Self::read(text)? });
         }
-        let needed = text.starts_with('!');
-        let text = text.trim_start_matches('!');
+        let (needed, is_ours) = (text.starts_with('!'), text.starts_with('+'));
+        let text = text.trim_start_matches(['!', '+']);
         if text.starts_with('<') || text.starts_with('=') {
-            return Some(Self { needed, tag: "", name: "", example: text.trim_start_matches('='), after: None });
+            let example = text.trim_start_matches('=');
+            return Some(Self { needed, is_ours, tag: "", name: "", example, after: None });
         }
         let (tag, rest) = text.split_once(' ')?;
         let (name, example) = rest.split_once('=').unwrap_or((rest, ""));
-        Some(Self { needed, tag, name, example, after: None })
+        Some(Self { needed, is_ours, tag, name, example, after: None })
     }
 
     /// How the page calls it: by its name, or as the element that it is.
@@ -244,7 +264,7 @@ fn page() -> String {
          Every word of both scene languages, and what tyndall makes of it. This page is made by a test that reads each word:\n\
          `crates/tyndall-formats/tests/words.rs`. A parameter in the second column means what its language says; the third\n\
          column has those that mean something else here, and those that are errors until they are supported, or with\n\
-         `--lenient` warnings.\n",
+         `--lenient` warnings. Words with a † are tyndall's own: the other renderer does not know them.\n",
     );
     let mut wrong = Vec::new();
     PBRT.section(&mut page, &mut wrong);

@@ -103,14 +103,46 @@ pub(super) fn wound_by_normals(mut mesh: Mesh) -> Mesh {
     if mesh.normals.is_empty() {
         return mesh;
     }
-    for corners in &mut mesh.indices {
-        let at = |of: &[Vec3]| corners.map(|i| of.get(i as usize).copied().unwrap_or_default());
-        let ([a, b, c], normals) = (at(&mesh.positions), at(&mesh.normals));
-        if (b - a).cross(c - a).dot(normals.into_iter().sum()) < 0.0 {
-            corners.swap(1, 2);
+    for prim in 0..mesh.indices.len() {
+        if is_against_normals(&mesh, mesh.indices[prim]) {
+            mesh.indices[prim].swap(1, 2);
         }
     }
     mesh
+}
+
+/// The same surface for pbrt, to whom normals say where outside is: a triangle whose normals are against its winding gets
+/// corners of its own, with normals turned round. Shading follows the side of the triangle, so nothing looks different.
+pub(crate) fn with_normals_along_winding(mut mesh: Mesh) -> Mesh {
+    if mesh.normals.is_empty() {
+        return mesh;
+    }
+    let mut turned = std::collections::HashMap::new();
+    for prim in 0..mesh.indices.len() {
+        let corners = mesh.indices[prim];
+        if !is_against_normals(&mesh, corners) {
+            continue;
+        }
+        mesh.indices[prim] = corners.map(|i| {
+            *turned.entry(i).or_insert_with(|| {
+                let old = i as usize;
+                mesh.positions.push(mesh.positions[old]);
+                mesh.normals.push(-mesh.normals[old]);
+                if let Some(&uv) = mesh.uvs.get(old) {
+                    mesh.uvs.push(uv);
+                }
+                (mesh.positions.len() - 1) as u32
+            })
+        });
+    }
+    mesh
+}
+
+/// Whether a triangle is wound against the normals of its corners.
+pub(crate) fn is_against_normals(mesh: &Mesh, corners: [u32; 3]) -> bool {
+    let at = |of: &[Vec3]| corners.map(|i| of.get(i as usize).copied().unwrap_or_default());
+    let ([a, b, c], normals) = (at(&mesh.positions), at(&mesh.normals));
+    (b - a).cross(c - a).dot(normals.into_iter().sum()) < 0.0
 }
 
 pub(super) fn patches_of(patches: &PatchDesc) -> impl Iterator<Item = Patch> {
@@ -176,5 +208,23 @@ mod tests {
         assert_eq!(inline_mesh(&mesh).indices, [[0, 2, 1], [0, 2, 1]]);
         mesh.normals.clear();
         assert_eq!(inline_mesh(&mesh).indices, mesh.indices);
+    }
+
+    /// Only the triangle that is wound against its normals gets corners of its own.
+    #[test]
+    fn normals_are_turned_along_the_winding() {
+        let n = Vec3::new(0.3, 0.0, -1.0);
+        let mesh = Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            indices: vec![[0, 1, 2], [0, 2, 1]],
+            normals: vec![n; 3],
+            uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y],
+            reversed: false,
+        };
+        let mended = with_normals_along_winding(mesh.clone());
+        assert_eq!(mended.indices, [[3, 4, 5], [0, 2, 1]]);
+        assert_eq!(mended.normals, [n, n, n, -n, -n, -n]);
+        assert_eq!((&mended.positions[3..], &mended.uvs[3..]), (&mesh.positions[..], &mesh.uvs[..]));
+        assert_eq!(wound_by_normals(mended.clone()).indices, mended.indices);
     }
 }

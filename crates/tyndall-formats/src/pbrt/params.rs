@@ -363,6 +363,21 @@ impl Params {
         Some(found.map(Varying::constant))
     }
 
+    /// Refuses the texture of a parameter that pbrt would take, and says why.
+    pub(super) fn texture_later(&mut self, name: &'static str, reason: &str) {
+        if !self.list.iter().any(|p| p.name == name && p.kind == ParamType::Texture) {
+            return;
+        }
+        if let Some(param) = self.take(name, &[ParamType::Texture]) {
+            let message = format!("a texture for {} of {} is not supported: {reason}", quote(name), self.owner);
+            let help = format!(
+                "give {} as a constant, or paint the surface: \"diffusetransmission\" takes textures",
+                quote(name)
+            );
+            self.errors.push(SceneError::not_yet(param.declared, message).help(help));
+        }
+    }
+
     /// The texture that a parameter names. One that does not exist is reported; then the parameter counts as not given.
     fn texture_opt(&mut self, name: &'static str, textures: &Textures, texels: Texels) -> Option<Spanned<Varying>> {
         if !self.list.iter().any(|p| p.name == name && p.kind == ParamType::Texture) {

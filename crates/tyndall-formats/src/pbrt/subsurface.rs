@@ -88,6 +88,9 @@ impl Reader {
 
 /// The medium, and the factor on its coefficients.
 fn coefficients(p: &mut Params, eta: f64) -> (Coefficients, Spanned<f64>) {
+    for word in ["sigma_a", "sigma_s", "reflectance", "mfp"] {
+        p.texture_later(word, "light is followed through the medium inside, which is the same everywhere");
+    }
     let name = p.string_opt("name");
     let [sigma_a, sigma_s] = [p.spectrum_opt("sigma_a"), p.spectrum_opt("sigma_s")];
     let [reflectance, mfp] = [p.spectrum_opt("reflectance"), p.spectrum_opt("mfp")];

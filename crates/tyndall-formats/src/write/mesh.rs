@@ -1,14 +1,14 @@
 //! Meshes that the language cannot say in words: PLY files beside the scene.
 
-use crate::build::triangles::triangles_of;
+use crate::build::triangles::{is_against_normals, triangles_of, with_normals_along_winding};
 use crate::desc::{FileRef, ShapeDesc, ShapeKind};
 use crate::error::SceneError;
 use tyndall::shape::Mesh;
 
 use crate::mesh::{TriangleMesh, read_ply, write_ply};
 
-use super::Draft;
 use super::names::for_a_file;
+use super::{Draft, Language};
 
 impl Draft<'_> {
     /// The name of a PLY file with the triangles of a shape as they are, normals and texture coordinates included. `None` if
@@ -26,6 +26,7 @@ impl Draft<'_> {
 
     /// The name of a PLY file with these triangles, which are those of a shape.
     pub(super) fn mesh_file(&mut self, shape: &ShapeDesc, mesh: Mesh) -> String {
+        let mesh = if self.language == Language::Pbrt { with_normals_along_winding(mesh) } else { mesh };
         let some = |present: bool| present.then_some(());
         let triangles = TriangleMesh {
             positions: mesh.positions,
@@ -65,6 +66,12 @@ impl Draft<'_> {
         }
         names.unique(Some(&wanted), "mesh")
     }
+}
+
+/// Whether triangles of a shape from a file have normals against their winding.
+pub(super) fn has_normals_against_winding(kind: &ShapeKind) -> bool {
+    let Some(Ok(mesh)) = triangles_of(kind) else { return false };
+    mesh.indices.iter().any(|corners| is_against_normals(&mesh, *corners))
 }
 
 /// Whether a PLY file has normals. `None` if it cannot be read: whoever renders the scene is told.

@@ -10,7 +10,7 @@ use tyndall::spectrum::ColorMode;
 
 use super::parse;
 use crate::build::build;
-use crate::error::Diagnostics;
+use crate::error::{Diagnostics, Severity};
 
 fn scene(text: &str, color: ColorMode) -> Result<Scene, Diagnostics> {
     let (desc, sources) = parse(Path::new("scene.pbrt"), text)?;
@@ -88,6 +88,15 @@ fn a_medium_given_in_two_ways_or_by_half_is_an_error() {
     let mix = r#"MakeNamedMaterial "a" "string type" "subsurface" MakeNamedMaterial "b" "string type" "diffuse"
         Material "mix" "string materials" ["a" "b"]"#;
     assert_eq!(fault(mix), "a mixture with the material \"subsurface\" is not supported yet");
+    for word in ["sigma_a", "sigma_s", "reflectance", "mfp"] {
+        let text = format!(
+            "WorldBegin Texture \"t\" \"spectrum\" \"constant\"\nMaterial \"subsurface\" \"texture {word}\" \"t\" Shape \"sphere\""
+        );
+        let refused = scene(&text, ColorMode::Rgb).unwrap_err();
+        let error = &refused.errors[0];
+        assert!(error.message.contains(&format!("\"{word}\"")) && error.severity == Severity::NotYet, "{refused}");
+        assert!(refused.to_string().contains("which is the same everywhere"), "{refused}");
+    }
 }
 
 /// Seen from afar, a ball under a uniform sky shows its surface at all angles, weighted by their cosines: the mean over its
@@ -95,13 +104,25 @@ fn a_medium_given_in_two_ways_or_by_half_is_an_error() {
 /// reflectance of a smooth boundary of index 1.33 for diffuse light, 0.0667 (Walsh's integral, here summed).
 #[test]
 fn the_reflectance_asked_for_is_seen() {
-    let colour = [0.8, 0.5, 0.2];
-    let text = r#"Scale -1 1 1 LookAt 0 0 -5  0 0 0  0 1 0
+    seen_as_asked_for([0.8, 0.5, 0.2], ColorMode::Rgb);
+}
+
+/// With wavelengths, a white light and a grey reflectance: each wavelength sees what red, green and blue see above.
+#[test]
+fn the_reflectance_asked_for_is_seen_at_every_wavelength() {
+    seen_as_asked_for([0.5; 3], ColorMode::Spectral);
+}
+
+fn seen_as_asked_for(colour: [f64; 3], color: ColorMode) {
+    let [r, g, b] = colour;
+    let text = format!(
+        r#"Scale -1 1 1 LookAt 0 0 -5  0 0 0  0 1 0
         Camera "orthographic" Film "rgb" "integer xresolution" 32 "integer yresolution" 32
         PixelFilter "box" WorldBegin LightSource "infinite" "rgb L" [1 1 1]
-        Material "subsurface" "rgb reflectance" [0.8 0.5 0.2] "rgb mfp" [0.0001 0.0001 0.0001] "float g" 0.3
-        Shape "sphere""#;
-    let scene = scene(text, ColorMode::Rgb).unwrap();
+        Material "subsurface" "rgb reflectance" [{r} {g} {b}] "rgb mfp" [0.0001 0.0001 0.0001] "float g" 0.3
+        Shape "sphere""#
+    );
+    let scene = scene(&text, color).unwrap();
     let film = render(&scene, &VolPath::default(), &Settings { spp: 64, ..Settings::default() }, &()).film;
     let fresnel = diffuse_fresnel(1.33);
     let disk = std::f64::consts::FRAC_PI_4;

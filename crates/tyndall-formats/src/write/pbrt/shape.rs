@@ -7,7 +7,7 @@ use super::Pen;
 use super::entity::{Entity, quoted};
 use crate::build::triangles::triangles_of;
 use crate::desc::{MaterialKind, PatchDesc, ShapeDesc, ShapeKind};
-use crate::write::mesh::has_normals;
+use crate::write::mesh::{has_normals, has_normals_against_winding};
 use crate::write::names::{Names, printable};
 use crate::write::number::shortest;
 
@@ -129,7 +129,8 @@ impl Pen<'_, '_> {
             }
             ShapeKind::Ply { path, face_normals, smooth_normals, flip_tex_coords, displacement } => {
                 let as_it_is = !*flip_tex_coords
-                    && has_normals(path).is_none_or(|has| if has { !*face_normals } else { !*smooth_normals });
+                    && has_normals(path).is_none_or(|has| if has { !*face_normals } else { !*smooth_normals })
+                    && !has_normals_against_winding(&shape.kind);
                 let name =
                     if as_it_is { self.draft.relative(&path.value, path.span) } else { self.draft.mesh(shape)? };
                 let mut entity = Entity::new("Shape", &["plymesh"]);
