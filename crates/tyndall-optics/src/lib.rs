@@ -16,6 +16,7 @@ pub mod measured;
 pub mod mie;
 pub mod milk;
 pub mod mixture;
+pub mod recipe;
 pub mod sizes;
 pub mod spectra;
 pub mod substance;

@@ -54,8 +54,7 @@ impl Sphere {
         let k = 2.0 * PI / wavelength;
         let terms = terms(host * k * radius, sphere * k * radius);
         let two_n = |i: usize| 2.0 * i as f64 + 3.0;
-        let scattered: f64 =
-            terms.iter().enumerate().map(|(i, [a, b])| two_n(i) * (a.norm_sqr() + b.norm_sqr())).sum();
+        let scattered: f64 = terms.iter().enumerate().map(|(i, [a, b])| two_n(i) * (a.norm_sqr() + b.norm_sqr())).sum();
         let forward: Complex64 = terms.iter().enumerate().map(|(i, [a, b])| (a + b) * two_n(i)).sum();
         let area = 2.0 * PI / (k * k);
         let alpha = 2.0 * k * radius * host.im;
@@ -123,8 +122,7 @@ fn terms(x: Complex64, y: Complex64) -> Vec<[Complex64; 2]> {
     let m = y / x;
     // ζ or χ, of the orders n − 1 and n.
     let is_opaque = x.im > OPAQUE;
-    let (mut before, mut now) =
-        if is_opaque { ((i * x).exp(), -i * (i * x).exp()) } else { (-x.sin(), x.cos()) };
+    let (mut before, mut now) = if is_opaque { ((i * x).exp(), -i * (i * x).exp()) } else { (-x.sin(), x.cos()) };
     (before, now) = (now, now / x - before);
     (1..=last)
         .map(|n| {
@@ -174,8 +172,7 @@ fn psi(x: Complex64, last: usize) -> Vec<Complex64> {
     }
     // ψ₁ = sin x/x − cos x cancels where x is small, and sin x vanishes where it is large.
     let first = x.sin() / x - x.cos();
-    let scale =
-        if x.norm() < 1.0 || x.sin().norm() > first.norm() { x.sin() / values[0] } else { first / values[1] };
+    let scale = if x.norm() < 1.0 || x.sin().norm() > first.norm() { x.sin() / values[0] } else { first / values[1] };
     values.iter_mut().for_each(|v| *v *= scale);
     values
 }
@@ -205,7 +202,8 @@ mod tests {
                 [(found.extinction / area, row[7]), (found.scattering / area, row[8]), (found.g, row[9])]
             {
                 // The mean cosine of the smallest is 0 with an error of its own: the table's floor is 10⁻³.
-                let difference = (found - expected).abs() / expected.abs().max(if expected == row[9] { 1e-3 } else { 0.0 });
+                let difference =
+                    (found - expected).abs() / expected.abs().max(if expected == row[9] { 1e-3 } else { 0.0 });
                 assert!(difference < 1e-9, "m = {re} {im}, x = {x}: {found} instead of {expected}, {difference:e}");
             }
             count += 1;

@@ -65,9 +65,7 @@ impl Scatterer {
     fn phase(&self, cos_theta: f64) -> f64 {
         match self {
             Self::Sphere(sphere) => sphere.phase(cos_theta),
-            Self::Molecules => {
-                3.0 / (4.0 * PI * (3.0 + MOLECULES)) * (1.0 + MOLECULES * cos_theta * cos_theta)
-            }
+            Self::Molecules => 3.0 / (4.0 * PI * (3.0 + MOLECULES)) * (1.0 + MOLECULES * cos_theta * cos_theta),
         }
     }
 }
@@ -76,12 +74,7 @@ impl Mixture {
     /// The whole at a wavelength in vacuum [m].
     pub fn at(&self, wavelength: f64) -> Bulk {
         let host = self.host.index(wavelength);
-        let mut bulk = Bulk {
-            sigma_a: self.host.absorption(wavelength),
-            sigma_s: 0.0,
-            g: 0.0,
-            scatterers: Vec::new(),
-        };
+        let mut bulk = Bulk { sigma_a: self.host.absorption(wavelength), sigma_s: 0.0, g: 0.0, scatterers: Vec::new() };
         let mut forward = 0.0;
         for particles in &self.particles {
             let index = particles.substance.index(wavelength);
@@ -116,7 +109,7 @@ impl Mixture {
     /// The phase function that holds for light of several wavelengths [m], at regular cosines from −1 to 1: the one of all
     /// that they scatter, `Σ σ_s p/Σ σ_s`, up to a factor. Empty where nothing scatters.
     ///
-    /// Mie's series is summed at the [`angles`] that a peak of the largest particles asks for, and is linear between.
+    /// Mie's series is summed at the [`angles`] that a peak of the largest particles asks for; its logarithm is linear between.
     pub fn phase(&self, wavelengths: &[f64]) -> Vec<f64> {
         let shortest = wavelengths.iter().copied().fold(f64::INFINITY, f64::min);
         let size = 2.0 * PI * self.largest() / shortest;
@@ -127,7 +120,8 @@ impl Mixture {
         let angles = angles(size);
         let values: Vec<f64> = angles
             .iter()
-            .map(|theta| bulks.iter().map(|bulk| bulk.sigma_s * bulk.phase(theta.cos())).sum())
+            .map(|theta| bulks.iter().map(|bulk| bulk.sigma_s * bulk.phase(theta.cos())).sum::<f64>())
+            .map(|value| value.max(f64::MIN_POSITIVE).ln())
             .collect();
         let segments = segments(size);
         (0..=segments)
@@ -135,7 +129,7 @@ impl Mixture {
                 let theta = (2.0 * i as f64 / segments as f64 - 1.0).clamp(-1.0, 1.0).acos();
                 let above = angles.partition_point(|angle| *angle <= theta).clamp(1, angles.len() - 1);
                 let share = (theta - angles[above - 1]) / (angles[above] - angles[above - 1]);
-                values[above - 1] + share * (values[above] - values[above - 1])
+                (values[above - 1] + share * (values[above] - values[above - 1])).exp()
             })
             .collect()
     }
@@ -147,7 +141,8 @@ impl Bulk {
         if self.sigma_s == 0.0 {
             return 0.0;
         }
-        self.scatterers.iter().map(|(sigma_s, scatterer)| sigma_s * scatterer.phase(cos_theta)).sum::<f64>() / self.sigma_s
+        self.scatterers.iter().map(|(sigma_s, scatterer)| sigma_s * scatterer.phase(cos_theta)).sum::<f64>()
+            / self.sigma_s
     }
 }
 
@@ -180,14 +175,15 @@ mod tests {
         Mixture { host: Substance::Air, particles: vec![particles] }
     }
 
-    /// Resonances of droplets are narrower than the classes: four times as many tell what they leave out.
+    /// Resonances of droplets are narrower than the classes: four times as many tell what they leave out: 5·10⁻⁴ of
+    /// σ_s and 2·10⁻⁴ of g. The manual promises 10⁻³.
     #[test]
     fn coefficients_have_converged_in_the_number_of_sizes() {
         let wavelength = 550e-9;
-        let [few, many] = [Sizes::gamma(6e-6, 1.0 / 9.0), gamma_of(6e-6, 1.0 / 9.0, 1280)]
-            .map(|sizes| cloud(sizes).at(wavelength));
-        assert!((few.sigma_s / many.sigma_s - 1.0).abs() < 1e-4, "{} {}", few.sigma_s, many.sigma_s);
-        assert!((few.g - many.g).abs() < 1e-4, "{} {}", few.g, many.g);
+        let [few, many] =
+            [Sizes::gamma(6e-6, 1.0 / 9.0), gamma_of(6e-6, 1.0 / 9.0, 5120)].map(|sizes| cloud(sizes).at(wavelength));
+        assert!((few.sigma_s / many.sigma_s - 1.0).abs() < 1e-3, "{} {}", few.sigma_s, many.sigma_s);
+        assert!((few.g - many.g).abs() < 1e-3, "{} {}", few.g, many.g);
     }
 
     /// Geometric optics: a cloud's extinction is `3/2 v/a` times `Q/2`, and `Q` is 2 within `2 x^(−2/3)`.

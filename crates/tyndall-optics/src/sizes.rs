@@ -11,12 +11,12 @@
 //!
 //! Smooth densities that vanish at both ends are summed at regular steps (of the radius, or of its logarithm), which
 //! converges faster than any power of the step. What limits it are the resonances of clear large spheres; with
-//! [`CLASSES`] classes the bulk coefficients of a cloud have converged to 10⁻⁴ (tested).
+//! 1280 classes σ_s and g of a cloud have converged to 10⁻³ (tested).
 
 /// Radii of a smooth distribution.
-const CLASSES: usize = 320;
-/// Standard deviations on either side that are summed.
-const WIDTHS: f64 = 6.5;
+const CLASSES: usize = 1280;
+/// Logarithm of a density that is left out.
+const NOTHING: f64 = -27.0;
 
 /// Shares of the whole volume by radius.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,9 +50,11 @@ impl Sizes {
         Self::by_logarithm(peak, k.sqrt().recip(), CLASSES, |ln| k * (ln + 1.0 - ln.exp()))
     }
 
-    /// From the logarithm of the volume by ln r, where ln r counts from a `peak` of some `width`.
+    /// From the logarithm of the volume by ln r, where ln r counts from a `peak` of some `width` and the density there is 1.
     fn by_logarithm(peak: f64, width: f64, classes: usize, log_density: impl Fn(f64) -> f64) -> Self {
-        let ln = |i: usize| WIDTHS * width * (2.0 * i as f64 / (classes - 1) as f64 - 1.0);
+        let end = |step: f64| (1..).map(|i| f64::from(i) * step).find(|ln| log_density(*ln) < NOTHING);
+        let (low, high) = (end(-0.25 * width).unwrap_or(0.0), end(0.25 * width).unwrap_or(0.0));
+        let ln = |i: usize| low + (high - low) * i as f64 / (classes - 1) as f64;
         Self::normalised((0..classes).map(|i| [peak * ln(i).exp(), log_density(ln(i)).exp()]))
     }
 
@@ -66,8 +68,6 @@ impl Sizes {
         let mut classes: Vec<_> = classes.collect();
         let sum: f64 = classes.iter().map(|class| class[1]).sum();
         classes.iter_mut().for_each(|class| class[1] /= sum);
-        // What has nothing to give costs as much as the rest.
-        classes.retain(|class| class[1] > 1e-12);
         Self { classes }
     }
 
@@ -92,7 +92,7 @@ pub(crate) mod tests {
     fn a_gamma_distribution_has_its_effective_radius_and_variance() {
         for (a, b) in [(6e-6, 1.0 / 9.0), (1e-5, 0.2), (1e-6, 0.01)] {
             let sizes = Sizes::gamma(a, b);
-            assert!((sizes.effective_radius() / a - 1.0).abs() < 1e-6);
+            assert!((sizes.effective_radius() / a - 1.0).abs() < 1e-6, "{a} {b}: {}", sizes.effective_radius());
             let spread: f64 = sizes.classes.iter().map(|[r, share]| share / r * (r - a).powi(2)).sum();
             let variance = spread * sizes.effective_radius() / (a * a);
             assert!((variance / b - 1.0).abs() < 1e-6, "{a} {b}: {variance}");

@@ -93,8 +93,7 @@ fn riboflavin(absorbance: f64) -> f64 {
 
 /// Quan and Fry 1995, eq. 3: wavelength in nm, salinity in g/kg, temperature in °C.
 fn quan_fry(l: f64, s: f64, t: f64) -> f64 {
-    1.31405 + (1.779e-4 - 1.05e-6 * t + 1.6e-8 * t * t) * s - 2.02e-6 * t * t
-        + (15.868 + 0.01155 * s - 0.00423 * t) / l
+    1.31405 + (1.779e-4 - 1.05e-6 * t + 1.6e-8 * t * t) * s - 2.02e-6 * t * t + (15.868 + 0.01155 * s - 0.00423 * t) / l
         - 4382.0 / (l * l)
         + 1.1455e6 / (l * l * l)
 }
