@@ -9,10 +9,12 @@
 //! - [`recipe`]: milk, cloud, fog, ink, smoke and sea water, by their parameters.
 //! - [`mixture`]: particles in a host; [`milk`] is one, [`sizes`] and [`substance`] say of what.
 //! - [`mie`]: one sphere.
+//! - [`medium`]: a mixture as a renderer takes it.
 
 pub mod half_space;
 mod matrix;
 pub mod measured;
+pub mod medium;
 pub mod mie;
 pub mod milk;
 pub mod mixture;

@@ -79,11 +79,11 @@ const fn parameter(name: &'static str, about: &'static str, default: f64, range:
     Parameter { name, about, default, range }
 }
 
-const RADIUS: [f64; 2] = [0.01, 50.0];
-const FINE: [f64; 2] = [0.001, 2.0];
-const VARIANCE: Parameter = parameter("variance", "effective variance of the radii [1]", 1.0 / 9.0, [0.005, 0.4]);
+const RADIUS: [f64; 2] = [0.01, 20.0];
+const FINE: [f64; 2] = [0.001, 0.5];
+const VARIANCE: Parameter = parameter("variance", "effective variance of the radii [1]", 1.0 / 9.0, [0.005, 0.25]);
 const SPREAD: Parameter =
-    parameter("spread", "geometric standard deviation of the radii, by number [1]", 1.5, [1.01, 2.5]);
+    parameter("spread", "geometric standard deviation of the radii, by number [1]", 1.5, [1.01, 2.0]);
 
 /// All recipes.
 pub static RECIPES: [Recipe; 6] = [
