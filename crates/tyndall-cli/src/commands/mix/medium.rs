@@ -6,7 +6,7 @@ use anyhow::bail;
 use tyndall_formats::{film::save, write::Language};
 use tyndall_optics::{medium::Medium, mixture::Mixture};
 
-use super::{options::MixOptions, six};
+use super::{options::MixOptions, short};
 
 /// Whether a name is one that media can have.
 pub(crate) fn check(path: &Path) -> anyhow::Result<()> {
@@ -29,7 +29,7 @@ pub(crate) fn write(path: &Path, options: &MixOptions, mixture: &Mixture) -> any
 /// What it is, in lines.
 fn comment(options: &MixOptions) -> [String; 3] {
     let parameters = options.recipe.parameters.iter().zip(&options.values);
-    let numbers: Vec<_> = parameters.map(|(p, value)| format!("{} {}", p.name, six(*value))).collect();
+    let numbers: Vec<_> = parameters.map(|(p, value)| format!("{} {}", p.name, short(*value))).collect();
     [
         format!("{}: {}. By tyndall mix.", options.recipe.about, numbers.join(", ")),
         format!("Source: {}.", options.recipe.source),
@@ -43,10 +43,10 @@ fn pbrt(options: &MixOptions, medium: &Medium) -> String {
     out += "# Option \"string unit\" \"mm\" goes with it, or \"float scale\" 1000 in a scene of metres.\n";
     let _ = writeln!(out, "MakeNamedMedium \"{name}\" \"string type\" \"homogeneous\"");
     for (word, values) in [("sigma_a", &medium.sigma_a), ("sigma_s", &medium.sigma_s)] {
-        let pairs: Vec<_> = medium.lambda.iter().zip(values).map(|(l, v)| format!("{l} {}", six(*v))).collect();
+        let pairs: Vec<_> = medium.lambda.iter().zip(values).map(|(l, v)| format!("{l} {}", short(*v))).collect();
         let _ = writeln!(out, "  \"spectrum {word}\" [ {} ]", pairs.join("  "));
     }
-    let _ = writeln!(out, "  \"float g\" {}", six(medium.g));
+    let _ = writeln!(out, "  \"float g\" {}", short(medium.g));
     out
 }
 
@@ -65,7 +65,7 @@ fn mitsuba(options: &MixOptions, medium: &Medium) -> String {
         let _ = writeln!(out, "    <spectrum name=\"{word}\" value=\"{}\"/>", pairs.join(", "));
     }
     if !medium.phase.is_empty() {
-        let values: Vec<_> = medium.phase.iter().map(|v| six(*v)).collect();
+        let values: Vec<_> = medium.phase.iter().map(|v| short(*v)).collect();
         let values = values.join(" ");
         let _ = writeln!(out, "    <phase type=\"tabphase\"><string name=\"values\" value=\"{values}\"/></phase>");
     }

@@ -114,7 +114,7 @@ fn add_phase(told: &mut Told, mixture: &Mixture) {
 
 impl Told {
     fn table(&self, about: &str) -> String {
-        let numbers: Vec<_> = self.parameters.iter().map(|(name, value)| format!("{name} {}", six(*value))).collect();
+        let numbers: Vec<_> = self.parameters.iter().map(|(name, value)| format!("{name} {}", short(*value))).collect();
         let mut out = format!("{about}\n{}\n{}\n\n", numbers.join(", "), self.source);
         let _ = writeln!(out, "{:>8} {:>12} {:>12} {:>9} {:>12}", "nm", "σ_a [1/mm]", "σ_s [1/mm]", "g", "σ_s′ [1/mm]");
         let names = self.by_wavelength.iter().map(|row| row.nanometres.unwrap_or_default().to_string());
@@ -128,6 +128,6 @@ impl Told {
 }
 
 /// A number with six digits.
-fn six(value: f64) -> String {
+fn short(value: f64) -> String {
     format!("{value:.5e}").parse::<f64>().map_or_else(|_| value.to_string(), |v| v.to_string())
 }

@@ -31,16 +31,15 @@ pub(crate) struct MixOutput {
 fn command(recipe: &'static Recipe) -> Command {
     let arguments = recipe.parameters.iter().map(|p| {
         let [least, most] = p.range;
-        let help = format!("{}, {least} to {most} [default: {:.4}]", p.about, p.default);
-        let trimmed = help.replace("0000]", "]").replace("000]", "]").replace("00]", "]").replace(".]", "]");
+        let help = format!("{}, {least} to {most} [default: {}]", p.about, super::short(p.default));
         let parser = move |word: &str| match word.parse::<f64>() {
             Ok(v) if (least..=most).contains(&v) => Ok(v),
             _ => Err(format!("expected a number between {least} and {most}")),
         };
-        Arg::new(p.name).long(p.name).value_name("NUMBER").help(trimmed).value_parser(parser).allow_negative_numbers(true)
+        Arg::new(p.name).long(p.name).value_name("NUMBER").help(help).value_parser(parser).allow_negative_numbers(true)
     });
-    let command = Command::new(recipe.name).about(recipe.about).args(arguments);
-    MixOutput::augment_args(command.after_help(format!("Source: {}", recipe.source)))
+    let command = MixOutput::augment_args(Command::new(recipe.name).args(arguments));
+    command.about(recipe.about).long_about(None).after_help(format!("Source: {}", recipe.source))
 }
 
 impl Subcommand for MixOptions {
