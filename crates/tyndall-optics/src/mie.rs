@@ -166,14 +166,18 @@ fn psi(x: Complex64, last: usize) -> Vec<Complex64> {
         }
         if now.norm() > 1e60 {
             (above, now) = (above * 1e-120, now * 1e-120);
-            values.iter_mut().skip(n).for_each(|v| *v *= 1e-120);
+            for value in values.iter_mut().skip(n) {
+                *value *= 1e-120;
+            }
         }
         (above, now) = (now, now * (2.0 * n as f64 + 1.0) / x - above);
     }
     // ψ₁ = sin x/x − cos x cancels where x is small, and sin x vanishes where it is large.
     let first = x.sin() / x - x.cos();
     let scale = if x.norm() < 1.0 || x.sin().norm() > first.norm() { x.sin() / values[0] } else { first / values[1] };
-    values.iter_mut().for_each(|v| *v *= scale);
+    for value in &mut values {
+        *value *= scale;
+    }
     values
 }
 

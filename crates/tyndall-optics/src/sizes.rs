@@ -52,7 +52,7 @@ impl Sizes {
 
     /// From the logarithm of the volume by ln r, where ln r counts from a `peak` of some `width` and the density there is 1.
     fn by_logarithm(peak: f64, width: f64, classes: usize, log_density: impl Fn(f64) -> f64) -> Self {
-        let end = |step: f64| (1..).map(|i| f64::from(i) * step).find(|ln| log_density(*ln) < NOTHING);
+        let end = |step: f64| (1..10_000).map(|i| f64::from(i) * step).find(|ln| log_density(*ln) < NOTHING);
         let (low, high) = (end(-0.25 * width).unwrap_or(0.0), end(0.25 * width).unwrap_or(0.0));
         let ln = |i: usize| low + (high - low) * i as f64 / (classes - 1) as f64;
         Self::normalised((0..classes).map(|i| [peak * ln(i).exp(), log_density(ln(i)).exp()]))
@@ -67,7 +67,9 @@ impl Sizes {
     fn normalised(classes: impl Iterator<Item = [f64; 2]>) -> Self {
         let mut classes: Vec<_> = classes.collect();
         let sum: f64 = classes.iter().map(|class| class[1]).sum();
-        classes.iter_mut().for_each(|class| class[1] /= sum);
+        for class in &mut classes {
+            class[1] /= sum;
+        }
         Self { classes }
     }
 
