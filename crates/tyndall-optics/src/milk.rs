@@ -115,7 +115,7 @@ mod tests {
     /// The fat of the table: regular steps [µm] from 5 nm to 10 µm.
     fn on_the_grid(fat: f64, pressure: f64, step: f64) -> Sizes {
         let (median, sigma) = fat_globules(fat, pressure);
-        let classes: Vec<_> = (0..)
+        let classes: Vec<_> = (0..2000)
             .map(|i| (0.005 + (f64::from(i) + 0.5) * step) * 1e-6)
             .take_while(|r| *r < 10e-6)
             .map(|r| [r, (-0.5 * ((r / median).ln() / sigma).powi(2)).exp() / r])

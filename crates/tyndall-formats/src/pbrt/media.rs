@@ -24,16 +24,17 @@ impl Reader {
         let mut mixed = None;
         match p.string_opt("type") {
             Some(kind) if kind.value == "homogeneous" => {}
-            Some(kind) => match recipe_named(&kind.value) {
-                Some(recipe) => mixed = Some(mixture(&mut p, kind, recipe)),
-                None => {
+            Some(kind) => {
+                if let Some(recipe) = recipe_named(&kind.value) {
+                    mixed = Some(mixture(&mut p, kind, recipe));
+                } else {
                     let known: Vec<_> = ["homogeneous"].into_iter().chain(RECIPES).collect();
                     self.unknown_kind("medium", &kind.map(Cow::Owned), &known, &LATER_MEDIA);
                     // Its parameters belong to another kind: a clear medium has its name.
                     p = Params::new(String::new(), name.span, Vec::new(), &[], &self.dir);
                     is_known = false;
                 }
-            },
+            }
             None => p.error(
                 SceneError::at(name.span, "a medium needs \"string type\"").help("\"string type\" \"homogeneous\""),
             ),
