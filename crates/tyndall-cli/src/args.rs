@@ -5,7 +5,10 @@ use std::{path::PathBuf, time::Duration};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use tyndall::film::Crop;
 
-use crate::{commands::lab::options::Instrument, values};
+use crate::{
+    commands::{lab::options::Instrument, mix::options::MixOptions},
+    values,
+};
 
 /// A renderer for light that scatters many times: milk, marble, skin, fog.
 #[derive(Debug, Parser)]
@@ -31,6 +34,11 @@ pub(crate) enum Command {
     /// Measure with a virtual instrument: plane layers, a point source, a ball, a random walk
     #[command(subcommand)]
     Lab(Box<Instrument>),
+    /// Mix milk, cloud, fog, ink, smoke or sea water from what is in it: coefficients, plots, media for scenes
+    #[command(subcommand)]
+    Mix(Box<MixOptions>),
+    /// List all materials that have a name, each with its colour
+    Materials(MaterialsOptions),
     /// Measure published numbers, and say whether the program reproduces them
     Verify(VerifyOptions),
 }
@@ -125,6 +133,14 @@ pub(crate) struct ToneOptions {
     /// Curve of PNG files
     #[arg(long, value_name = "NAME", default_value = "srgb", help_heading = "Output")]
     pub(crate) curve: CurveName,
+}
+
+/// Lists all materials that have a name.
+#[derive(Debug, Args)]
+pub(crate) struct MaterialsOptions {
+    /// Write the list as a page (index.html) in this directory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) page: Option<PathBuf>,
 }
 
 /// Compares two images.

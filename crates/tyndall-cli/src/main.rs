@@ -36,6 +36,8 @@ fn main() -> ExitCode {
         Command::Lecture(options) => commands::lecture::run(&options),
         Command::Info(options) => commands::info::run(&options),
         Command::Lab(instrument) => commands::lab::run(&instrument),
+        Command::Mix(options) => commands::mix::run(&options),
+        Command::Materials(options) => commands::materials::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
     };
     outcome.unwrap_or_else(|error| {

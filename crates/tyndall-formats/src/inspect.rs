@@ -93,7 +93,10 @@ fn media_out_of_scale(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneE
         };
         let measured = matches!(
             words.coefficients,
-            Coefficients::Preset { .. } | Coefficients::PerMillimetre { .. } | Coefficients::Reflectance { .. }
+            Coefficients::Preset { .. }
+                | Coefficients::Recipe { .. }
+                | Coefficients::PerMillimetre { .. }
+                | Coefficients::Reflectance { .. }
         );
         warnings.push(SceneError::warning(words.span, told).help(if measured {
             "its coefficients are per mm: does `Option \"string unit\"` say what a unit of the scene is?"

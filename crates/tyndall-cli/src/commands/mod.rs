@@ -5,5 +5,7 @@ pub(crate) mod convert;
 pub(crate) mod info;
 pub(crate) mod lab;
 pub(crate) mod lecture;
+pub(crate) mod materials;
+pub(crate) mod mix;
 pub(crate) mod render;
 pub(crate) mod verify;

@@ -8,6 +8,8 @@ use tyndall::{
 use tyndall_optics::{
     half_space::HalfSpace,
     measured::{self, Anisotropic},
+    medium::Medium,
+    recipe,
 };
 
 use super::{Builder, spectra::Measure};
@@ -19,6 +21,13 @@ use crate::{
 
 impl Builder<'_> {
     pub(super) fn medium(&mut self, desc: &MediumDesc) -> Option<Homogeneous> {
+        if let Coefficients::Recipe { name, values } = &desc.coefficients {
+            let (coefficients, phase) = match mixed(name, values) {
+                Ok(medium) => medium,
+                Err(told) => return self.fail(SceneError::at(name.span, told)),
+            };
+            return self.medium(&MediumDesc { coefficients, phase, ..desc.clone() });
+        }
         let scale = desc.scale.value;
         if !scale.is_finite() || scale < 0.0 {
             return self.fail(SceneError::at(desc.scale.span, format!("a medium cannot be scaled by {scale}")));
@@ -39,6 +48,8 @@ impl Builder<'_> {
     fn coefficients(&mut self, desc: &MediumDesc) -> Option<(Spectrum, Spectrum)> {
         match &desc.coefficients {
             Coefficients::Preset { name, reduced } => self.preset(name, *reduced),
+            // Written out before.
+            Coefficients::Recipe { .. } => None,
             Coefficients::AbsorptionScattering { sigma_a, sigma_s } => {
                 Some((self.spectrum(sigma_a, Measure::Coefficient)?, self.spectrum(sigma_s, Measure::Coefficient)?))
             }
@@ -152,6 +163,20 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// A recipe in numbers: its coefficients by wavelength, its phase function by a table.
+fn mixed(name: &Spanned<String>, values: &[f64]) -> Result<(Coefficients, PhaseDesc), String> {
+    let recipe = recipe::named(&name.value).ok_or_else(|| format!("there is no recipe \"{}\"", name.value))?;
+    let medium = Medium::of(&recipe.mix(values)?);
+    let spectrum = |values| Spanned::new(SpectrumDesc::Samples { lambda: medium.lambda.clone(), values }, name.span);
+    let [sigma_a, sigma_s] = [medium.sigma_a, medium.sigma_s].map(spectrum);
+    let phase = if medium.phase.is_empty() {
+        PhaseDesc::Isotropic
+    } else {
+        PhaseDesc::Tabulated { values: Spanned::new(medium.phase, name.span) }
+    };
+    Ok((Coefficients::PerMillimetre { sigma_a, sigma_s }, phase))
 }
 
 /// The mean cosine of the light that full scattering sends on.

@@ -224,3 +224,25 @@ fn what_is_nearer_than_the_near_clip_is_not_seen() {
         assert_eq!(scene.geometry.intersect(&ray, f32::INFINITY).is_none(), kept > 0.0);
     }
 }
+
+/// A recipe is per millimetre: in a scene of centimetres ten times as much, at each of its wavelengths. Its phase function has
+/// the mean cosine that reduced scattering was kept for, but for the steps of its table.
+#[test]
+fn a_recipe_is_its_mixture_in_the_scenes_unit_of_length() {
+    let text = "Option \"string unit\" \"cm\" WorldBegin\n\
+                MakeNamedMedium \"m\" \"string type\" \"milk\" \"float fat\" 1.5 \"float scale\" 2\n\
+                MakeNamedMedium \"f\" \"string type\" \"fog\" \"float water\" 0\n";
+    let (desc, sources) = crate::pbrt::parse(Path::new("scene.pbrt"), text).unwrap();
+    let scene = super::build(&desc, sources, ColorMode::Spectral).unwrap().0;
+    let expected = tyndall_optics::medium::Medium::of(&tyndall_optics::milk::milk(1.5, 3.3, 20.0));
+    let milk = &scene.media[0];
+    for (i, lambda) in expected.lambda.iter().enumerate() {
+        for (found, per_mm) in [(&milk.sigma_a, expected.sigma_a[i]), (&milk.sigma_s, expected.sigma_s[i])] {
+            let ratio = f64::from(found.at(*lambda as f32)) / (20.0 * per_mm);
+            assert!((ratio - 1.0).abs() < 1e-6, "{lambda}: {ratio}");
+        }
+    }
+    assert!((f64::from(milk.phase.mean_cosine()) - expected.g).abs() < 1e-3, "{}", milk.phase.mean_cosine());
+    // Fog without water is air.
+    assert!(scene.media[1].sigma_s.is_zero() && scene.media[1].sigma_a.is_zero());
+}

@@ -29,6 +29,13 @@ pub enum Coefficients {
         /// Whether scattering is the reduced coefficient, to be isotropic (pbrt), or the full one with its mean cosine.
         reduced: bool,
     },
+    /// Those of a mixture, with its own phase function.
+    Recipe {
+        /// Its name, in `tyndall_optics::recipe`.
+        name: Spanned<String>,
+        /// What it asks for, in its order and units.
+        values: Vec<f64>,
+    },
     /// Both coefficients.
     AbsorptionScattering {
         /// Absorption \[1/scene unit\].

@@ -7,6 +7,11 @@ use super::params::Params;
 use super::parser::Statement;
 use crate::desc::{Coefficients, MediumDesc, PhaseDesc, SpectrumDesc};
 use crate::error::SceneError;
+use crate::source::Spanned;
+use tyndall_optics::{
+    measured::{self, Source},
+    recipe::{self, Recipe},
+};
 
 const LATER_MEDIA: [&str; 4] = ["cloud", "nanovdb", "rgbgrid", "uniformgrid"];
 
@@ -16,29 +21,75 @@ impl Reader {
         let defaults = self.state.now.defaults.medium.clone();
         let mut p = self.params("medium", &mut s, &defaults);
         let mut is_known = true;
+        let mut mixed = None;
         match p.string_opt("type") {
-            Some(kind) if kind.value != "homogeneous" => {
-                self.unknown_kind("medium", &kind.map(Cow::Owned), &["homogeneous"], &LATER_MEDIA);
-                // Its parameters belong to another kind: a clear medium has its name.
-                p = Params::new(String::new(), name.span, Vec::new(), &[], &self.dir);
-                is_known = false;
+            Some(kind) if kind.value == "homogeneous" => {}
+            Some(kind) => {
+                if let Some(recipe) = recipe_named(&kind.value) {
+                    mixed = Some(mixture(&mut p, kind, recipe));
+                } else {
+                    let known: Vec<_> = ["homogeneous"].into_iter().chain(RECIPES).collect();
+                    self.unknown_kind("medium", &kind.map(Cow::Owned), &known, &LATER_MEDIA);
+                    // Its parameters belong to another kind: a clear medium has its name.
+                    p = Params::new(String::new(), name.span, Vec::new(), &[], &self.dir);
+                    is_known = false;
+                }
             }
-            Some(_) => {}
             None => p.error(
                 SceneError::at(name.span, "a medium needs \"string type\"").help("\"string type\" \"homogeneous\""),
             ),
         }
+        let (coefficients, phase) = match mixed {
+            Some(mixed) => (mixed, PhaseDesc::Isotropic),
+            None => (coefficients(&mut p), phase(&mut p)),
+        };
+        let concentration = concentration(&mut p, &coefficients);
         let desc = MediumDesc {
             span: s.whole,
             name: Some(name.value.to_string()),
-            coefficients: coefficients(&mut p),
-            scale: p.not_negative("scale", if is_known { 1.0 } else { 0.0 }),
-            phase: phase(&mut p),
+            coefficients,
+            scale: p.not_negative("scale", if is_known { 1.0 } else { 0.0 }).map(|scale| scale * concentration),
+            phase,
             emission: p.emission_opt("Le", "Lescale"),
         };
         self.finish_params(p);
         self.checked(|r| r.media.define(&name.value, s.whole, desc).map(drop));
     }
+}
+
+/// The recipes that are types of media. A `cloud` is pbrt's own word for something else: droplets are `fog` here.
+const RECIPES: [&str; 5] = ["fog", "ink", "milk", "sea", "smoke"];
+
+fn recipe_named(kind: &str) -> Option<&'static Recipe> {
+    RECIPES.contains(&kind).then(|| recipe::named(kind)).flatten()
+}
+
+/// tyndall's own: a medium by what is in it.
+fn mixture(p: &mut Params, name: Spanned<String>, recipe: &'static Recipe) -> Coefficients {
+    let value = |parameter: &recipe::Parameter| {
+        let [least, most] = parameter.range;
+        let range = format!("between {least} and {most}: {}", parameter.about);
+        p.float_in(parameter.name, parameter.default, &range, |v| (least..=most).contains(&v)).value
+    };
+    Coefficients::Recipe { name, values: recipe.parameters.iter().map(value).collect() }
+}
+
+/// tyndall's own: how much of a measured medium is in clear water, in [0, 1]. Coefficients are proportional to it, which is how
+/// Narasimhan 2006 measured: media by dilution only.
+fn concentration(p: &mut Params, coefficients: &Coefficients) -> f64 {
+    let by_dilution = match coefficients {
+        Coefficients::Preset { name, .. } => {
+            measured::named(&name.value).is_none_or(|m| m.source == Source::Narasimhan2006)
+        }
+        _ => false,
+    };
+    if p.has("concentration") && !by_dilution {
+        p.error(
+            SceneError::at(p.span, "only media that were measured by dilution have a \"concentration\"")
+                .help("those are the presets of Narasimhan 2006; \"scale\" is a factor on any coefficients"),
+        );
+    }
+    p.float_in("concentration", 1.0, "between 0 and 1", |c| (0.0..=1.0).contains(&c)).value
 }
 
 fn coefficients(p: &mut Params) -> Coefficients {
@@ -62,8 +113,7 @@ fn coefficients(p: &mut Params) -> Coefficients {
         }
         return Coefficients::Preset { name: preset, reduced: reduced.value };
     }
-    let [sigma_a, sigma_s] =
-        given.map(|s| s.unwrap_or(crate::source::Spanned::new(SpectrumDesc::Constant(1.0), p.span)));
+    let [sigma_a, sigma_s] = given.map(|s| s.unwrap_or(Spanned::new(SpectrumDesc::Constant(1.0), p.span)));
     Coefficients::AbsorptionScattering { sigma_a, sigma_s }
 }
 

@@ -6,7 +6,7 @@ mod gonio;
 pub(crate) mod options;
 mod picture;
 mod polar;
-mod report;
+pub(crate) mod report;
 
 use std::{
     io::Read,

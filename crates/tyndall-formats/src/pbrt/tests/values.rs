@@ -323,6 +323,28 @@ fn a_preset_is_reduced_unless_asked_for_in_full_and_a_medium_may_shine() {
     assert_eq!((&le.spectrum.value, le.scale), (&SpectrumDesc::Rgb([1.0, 2.0, 3.0]), 4.0));
 }
 
+#[test]
+fn a_medium_may_be_a_recipe_and_a_measured_one_diluted() {
+    let desc = world(
+        r#"MakeNamedMedium "a" "string type" "milk" "float fat" 0.1
+        MakeNamedMedium "b" "string type" "homogeneous" "string preset" "Lowfat Milk" "float concentration" 0.25 "float scale" 2"#,
+    );
+    let Coefficients::Recipe { name, values } = &desc.media[0].coefficients else { panic!() };
+    assert_eq!((name.value.as_str(), &values[..]), ("milk", &[0.1, 3.3, 20.0][..]));
+    assert_eq!(desc.media[1].scale.value, 0.5);
+    for (wrong, told) in [
+        (r#""milk" "float fat" 50"#, "between 0 and 10"),
+        (r#""milk" "float fet" 3"#, "fat"),
+        (r#""mlik""#, "milk"),
+        (r#""homogeneous" "string preset" "Skimmilk" "float concentration" 0.5"#, "dilution"),
+        (r#""homogeneous" "string preset" "Lowfat Milk" "float concentration" 2"#, "between 0 and 1"),
+    ] {
+        let text = format!("WorldBegin MakeNamedMedium \"m\" \"string type\" {wrong}");
+        let faults = crate::pbrt::parse(std::path::Path::new("m.pbrt"), &text).unwrap_err().to_string();
+        assert!(faults.contains(told), "{wrong}: {faults}");
+    }
+}
+
 /// A lens is in millimetres; where the scene does not say its unit, pbrt takes it for a metre.
 #[test]
 fn every_camera_is_read_as_pbrt_reads_it() {

@@ -35,6 +35,7 @@ impl Pen<'_, '_> {
             Coefficients::Reflectance { reflectance, .. } => {
                 self.lacks(reflectance.span, "a medium by the reflectance of its surface");
             }
+            Coefficients::Recipe { name, .. } => self.lacks(name.span, "a medium by its recipe"),
             Coefficients::Preset { name, reduced } => {
                 match numbers_of(&name.value, *reduced, self.draft.desc.options.unit.value.millimetres()) {
                     Some(numbers) => {

@@ -5,12 +5,23 @@ use super::entity::Entity;
 use crate::build::media;
 use crate::desc::{Coefficients, MediumDesc, PhaseDesc, Span, SpectrumDesc};
 use crate::write::number::as_single;
+use tyndall_optics::recipe;
 
 impl Pen<'_, '_> {
     pub(super) fn medium(&mut self, index: usize, medium: &MediumDesc) {
         let mut entity = Entity::new("MakeNamedMedium", &[&self.media[index]]);
-        entity.string("type", "homogeneous");
+        let kind = match &medium.coefficients {
+            Coefficients::Recipe { name, .. } => &name.value,
+            _ => "homogeneous",
+        };
+        entity.string("type", kind);
         match &medium.coefficients {
+            Coefficients::Recipe { name, values } => {
+                let parameters = recipe::named(&name.value).map_or(&[][..], |recipe| recipe.parameters);
+                for (parameter, value) in parameters.iter().zip(values) {
+                    entity.float_unless(parameter.name, *value, parameter.default);
+                }
+            }
             Coefficients::Preset { name, reduced } => {
                 entity.string("preset", &name.value);
                 if !reduced {
