@@ -37,10 +37,15 @@ impl Draft<'_> {
         let mut bytes = Vec::new();
         // Writing to memory cannot fail.
         let _ = write_ply(&triangles, &mut bytes);
-        // The same mesh twice is one file.
+        self.file_beside(shape, "ply", bytes)
+    }
+
+    /// The name of a file with these bytes, which are those of a shape. The same bytes twice are one file.
+    pub(super) fn file_beside(&mut self, shape: &ShapeDesc, ending: &str, bytes: Vec<u8>) -> String {
         let known = self.meshes.iter().find(|(_, known)| *known == bytes).map(|(path, _)| path.clone());
         let path = known.unwrap_or_else(|| {
-            let path = self.directory.join(format!("{}-{}.ply", for_a_file(&self.stem), self.free_name(shape)));
+            let name = format!("{}-{}.{ending}", for_a_file(&self.stem), self.free_name(shape));
+            let path = self.directory.join(name);
             self.meshes.push((path.clone(), bytes));
             path
         });

@@ -172,8 +172,8 @@ impl Hair {
 
 /// `[sin θ, cos θ]`, each to its own precision.
 fn inclination(w: Vec3) -> [f64; 2] {
-    let w = w.as_dvec3();
-    [w.x, w.y.hypot(w.z)].map(|part| part / w.length())
+    let w = w.as_dvec3().normalize_or_zero();
+    [w.x, w.y.hypot(w.z)]
 }
 
 /// φ [rad].

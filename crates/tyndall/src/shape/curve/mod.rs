@@ -105,6 +105,21 @@ impl Curves {
         }
     }
 
+    /// Adds a strand whose radius changes evenly from one end to the other; `u` runs from 0 to 1 over each of its segments, as
+    /// in pbrt.
+    pub fn push_tapered(&mut self, basis: Basis, points: &[Vec3], [root, tip]: [f32; 2]) {
+        let points: Vec<DVec4> = points.iter().map(|p| p.as_dvec3().extend(0.0)).collect();
+        let count = basis.segments(points.len()).unwrap_or(0) as f32;
+        self.segments.extend(basis.beziers(&points).enumerate().map(|(i, bezier)| {
+            let mut points = bezier.map(|p| p.as_vec4());
+            for (k, p) in points.iter_mut().enumerate() {
+                let share = (i as f32 + k as f32 / 3.0) / count;
+                p.w = root + (tip - root) * share;
+            }
+            Segment { points, u: [0.0, 1.0] }
+        }));
+    }
+
     /// Gives the segments of a ribbon normals, from one to the next.
     pub fn orient(&mut self, normals: &[Vec3]) {
         self.normals = normals.windows(2).map(|pair| [pair[0], pair[1]]).collect();
@@ -146,8 +161,13 @@ impl Curves {
         Ok(())
     }
 
+    /// The segments as Bézier curves, with their radii.
+    pub fn beziers(&self) -> impl Iterator<Item = [DVec4; 4]> {
+        self.segments.iter().map(|segment| segment.bezier().0)
+    }
+
     /// The strands in the world; `None` under a map that stretches them unevenly.
-    pub(super) fn placed(mut self, transform: &Transform) -> Option<Self> {
+    pub fn placed(mut self, transform: &Transform) -> Option<Self> {
         let scale = Placement::new(transform).uniform_scale()?;
         let map = transform.matrix.as_dmat4();
         for p in self.segments.iter_mut().flat_map(|s| &mut s.points) {
