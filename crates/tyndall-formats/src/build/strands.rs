@@ -62,7 +62,6 @@ impl Builder<'_> {
             _ => Some(()),
         }
     }
-
 }
 
 /// The strands of a file, and where they are to be placed if their shape is to be placed there.

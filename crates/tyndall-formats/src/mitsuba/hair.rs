@@ -2,8 +2,8 @@
 
 use super::bsdf::relative_index;
 
-use super::scene::Builder;
 use super::object::{Measure, Object};
+use super::scene::Builder;
 use crate::desc::{HairColourDesc, HairDesc, MaterialKind, SpectrumDesc, Varying};
 use crate::error::SceneError;
 use crate::source::Spanned;
@@ -21,8 +21,8 @@ impl<'t> Builder<'t> {
         let alpha = object.float("scale_tilt", |_| true, "", &mut self.report);
         let alpha = alpha.map_or_else(|| constant(2.0), |found| found.map(Varying::constant));
         let scale = object.float("scale", |v| v >= 0.0, "at least 0", &mut self.report);
-        let pigments = ["eumelanin", "pheomelanin"]
-            .map(|name| object.float(name, |v| v >= 0.0, "at least 0", &mut self.report));
+        let pigments =
+            ["eumelanin", "pheomelanin"].map(|name| object.float(name, |v| v >= 0.0, "at least 0", &mut self.report));
         let sigma_a = self.varying(object, "sigma_a", Measure::Amount);
         let colour = match sigma_a {
             None => {
@@ -43,7 +43,8 @@ impl<'t> Builder<'t> {
                     Varying::Everywhere(SpectrumDesc::Rgb(rgb)) => *rgb = rgb.map(|v| v * scale_value),
                     _ => {
                         if let Some(scale) = scale.filter(|scale| scale.value != 1.0) {
-                            let error = SceneError::not_yet(scale.span, "only a constant \"sigma_a\" can be scaled yet");
+                            let error =
+                                SceneError::not_yet(scale.span, "only a constant \"sigma_a\" can be scaled yet");
                             self.report.errors.push(error.help("scale its values"));
                         }
                     }

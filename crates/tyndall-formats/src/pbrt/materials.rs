@@ -9,9 +9,9 @@ use super::params::Params;
 use super::parser::Statement;
 use super::textures::Textures;
 use crate::desc::{
-    BaseDesc, CoatedDesc, ConductorOptics, Encoding, HairColourDesc, HairDesc, ImageDesc, MappingDesc, MaterialDesc, MaterialId, MaterialKind,
-    MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, TextureDesc, TextureId, TextureKind,
-    Varying, WrapKind,
+    BaseDesc, CoatedDesc, ConductorOptics, Encoding, HairColourDesc, HairDesc, ImageDesc, MappingDesc, MaterialDesc,
+    MaterialId, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, TextureDesc,
+    TextureId, TextureKind, Varying, WrapKind,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};

@@ -60,6 +60,9 @@ pub(super) fn curve(p: &mut Params) -> Option<ShapeKind> {
     let width = p.not_negative("width", 1.0).value;
     let widths = [p.not_negative("width0", width), p.not_negative("width1", width)];
     let points = p.tuples::<3>("P", &[ParamType::Point3]);
+    if style.is_some_and(|style| style != Style::Ribbon) {
+        p.ignore("N", "only a ribbon has normals");
+    }
     let normals = p.tuples::<3>("N", &[ParamType::Normal3]);
     let (style, basis) = (style?, basis?);
     if widths.iter().all(|width| width.value == 0.0) {
@@ -69,15 +72,17 @@ pub(super) fn curve(p: &mut Params) -> Option<ShapeKind> {
     let Some(segments) = basis.segments(points.value.len()) else {
         let (count, first, step) = (points.value.len(), basis.points(), basis.step());
         let message = format!("{count} points make no whole number of segments of this curve");
-        p.error(SceneError::at(points.span, message).help(format!("give {first}, {}, {} … points", first + step, first + 2 * step)));
+        p.error(SceneError::at(points.span, message).help(format!(
+            "give {first}, {}, {} … points",
+            first + step,
+            first + 2 * step
+        )));
         return None;
     };
     let expected = if style == Style::Ribbon { segments + 1 } else { 0 };
     if normals.value.len() != expected {
-        let message = match style {
-            Style::Ribbon => format!("a ribbon of {segments} segments needs {expected} normals \"N\", not {}", normals.value.len()),
-            _ => "only a curve of \"string type\" \"ribbon\" has normals \"N\"".to_owned(),
-        };
+        let found = normals.value.len();
+        let message = format!("a ribbon of {segments} segments needs {expected} normals \"N\", not {found}");
         p.error(SceneError::at(normals.span, message));
         return None;
     }

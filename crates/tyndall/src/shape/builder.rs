@@ -247,9 +247,7 @@ impl GeometryBuilder {
                         .map(|prim| Entry::Triangle(TriangleId { object, prim }, mesh.triangle(prim))),
                 ),
                 Shape::Curves(curves) => entries.extend(
-                    curves
-                        .pieces()
-                        .map(|(piece, bounds)| Entry::Other(Primitive::Curve { object, piece }, bounds)),
+                    curves.pieces().map(|(piece, bounds)| Entry::Other(Primitive::Curve { object, piece }, bounds)),
                 ),
                 shape => entries.push(Entry::Other(self.primitive(object), shape.bounds())),
             }

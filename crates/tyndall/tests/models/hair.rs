@@ -94,9 +94,13 @@ fn a_fibre_scatters_as_much_as_one_that_is_smooth() {
 #[test]
 fn a_white_fibre_loses_nothing() {
     let rule = gauss_legendre_rule(400);
-    for (beta_m, beta_n, alpha, h) in
-        [(0.1, 0.2, 2.0, 0.3), (0.3, 0.3, -3.0, -0.99), (1.0, 1.0, 5.0, 0.0), (0.15, 0.9, 0.0, 0.8), (0.6, 0.15, 2.0, 1.0)]
-    {
+    for (beta_m, beta_n, alpha, h) in [
+        (0.1, 0.2, 2.0, 0.3),
+        (0.3, 0.3, -3.0, -0.99),
+        (1.0, 1.0, 5.0, 0.0),
+        (0.15, 0.9, 0.0, 0.8),
+        (0.6, 0.15, 2.0, 1.0),
+    ] {
         for theta_o in [0.0, -0.7, 1.3] {
             let hair = Hair::new(h, 1.55, Lanes::ZERO, [beta_m, beta_n], f32::to_radians(alpha));
             let wo = fibre_direction(theta_o, 0.0);

@@ -7,8 +7,8 @@ use super::Pen;
 use super::element::Element;
 use crate::build::made::parts;
 use crate::desc::{
-    BurleyDesc, ConductorOptics, HairColourDesc, HairDesc, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, PrincipledDesc,
-    PrincipledThinDesc, ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, Varying,
+    BurleyDesc, ConductorOptics, HairColourDesc, HairDesc, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind,
+    PrincipledDesc, PrincipledThinDesc, ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, Varying,
 };
 use crate::mitsuba::INDICES;
 use crate::write::number::{double, shortest};

@@ -5,9 +5,9 @@ use tyndall::relief::Rule;
 use super::Pen;
 use super::entity::{Entity, quoted};
 use crate::desc::{
-    BaseDesc, CoatedDesc, ConductorOptics, HairColourDesc, HairDesc, MappingDesc, MaterialDesc, MaterialId, MaterialKind,
-    MicrofacetKind,
-    ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, TextureKind, Varying, WrapKind,
+    BaseDesc, CoatedDesc, ConductorOptics, HairColourDesc, HairDesc, MappingDesc, MaterialDesc, MaterialId,
+    MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, TextureKind,
+    Varying, WrapKind,
 };
 
 /// pbrt's word for a material, or the nearest: materials without a name are called by it.

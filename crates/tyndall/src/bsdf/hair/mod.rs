@@ -27,9 +27,7 @@ use crate::{
     math::{Vec2, Vec3},
     spectrum::Lanes,
 };
-use lobes::{
-    Entry, azimuthal, exit_azimuth, longitudinal, sample_azimuthal, sample_longitudinal, shares,
-};
+use lobes::{Entry, azimuthal, exit_azimuth, longitudinal, sample_azimuthal, sample_longitudinal, shares};
 
 /// The lowest roughness: below it lobes are sharper than single precision can tell directions apart.
 const SMOOTHEST: f32 = 0.01;

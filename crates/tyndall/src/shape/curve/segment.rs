@@ -18,8 +18,14 @@ use glam::{DVec3, DVec4};
 /// Steps of `w` below this end the search.
 const SETTLED: f64 = 1e-9;
 
-/// How far a piece reaches beyond its ends \[1\], so that neighbours overlap by more than rounding.
+/// How far a part reaches beyond its ends at least \[1\], so that neighbours overlap: see [`Bezier::overlap`].
 const OVERLAP: f64 = 1e-7;
+
+/// Parts whose bulge is below this share of their radius are nearly cones.
+const STRAIGHT: f64 = 0.1;
+
+/// The shortest parts that are cut in two.
+const SHORTEST: f64 = 1.0 / 64.0;
 
 /// After so many steps there is nothing.
 const MAX_STEPS: u32 = 40;
@@ -51,6 +57,13 @@ impl Bezier {
         }
     }
 
+    /// Only where it is.
+    #[inline]
+    fn place(&self, w: f64) -> DVec3 {
+        let ([a, b, c, d], v) = (self.0.map(DVec4::truncate), 1.0 - w);
+        (a * v + b * (3.0 * w)) * (v * v) + (c * (3.0 * v) + d * w) * (w * w)
+    }
+
     /// The part between two parameters.
     pub(super) fn part(&self, [from, to]: [f64; 2]) -> Self {
         let blossom = |x: f64, y: f64, z: f64| {
@@ -66,6 +79,15 @@ impl Bezier {
         self.0.iter().map(|p| p.w).fold(0.0, f64::max)
     }
 
+    /// How far a part reaches beyond its ends \[1\]. The control points are rounded, so tangents of neighbours differ by an angle,
+    /// their end circles part by that angle times the radius, and the gap is to be closed.
+    pub(super) fn overlap(&self) -> f64 {
+        let [a, .., d] = self.0.map(DVec4::truncate);
+        let (size, leg) = (a.abs().max_element().max(d.abs().max_element()), (d - a).length() / 3.0);
+        let angle = 4.0 * f64::from(f32::EPSILON) * size / leg;
+        (OVERLAP + angle * (1.0 + self.reach() / leg)).min(SHORTEST)
+    }
+
     /// How far the curve is from its chord at most: an eighth of the greatest second derivative.
     pub(super) fn bulge(&self) -> f64 {
         let [a, b, c, d] = self.0.map(DVec4::truncate);
@@ -73,11 +95,23 @@ impl Bezier {
     }
 }
 
+/// That at the lesser distance.
+fn nearer<const N: usize>(found: [Option<Meeting>; N]) -> Option<Meeting> {
+    found.into_iter().flatten().min_by(|a, b| a[0].total_cmp(&b[0]))
+}
+
 /// A ray made ready for curves: distances are along the unit direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     pub(super) origin: DVec3,
     pub(super) dir: DVec3,
+}
+
+/// How near a ray comes to a chord: the distance, the parameter, and how long the chord is as the ray sees it.
+struct Approach {
+    distance: f64,
+    w: f64,
+    projected: f64,
 }
 
 /// Where a ray meets a curve: distance along the unit direction, parameter.
@@ -94,24 +128,41 @@ impl Line {
 
     /// The nearest entrance into the tube around a part of a curve, if it is ahead of the origin.
     pub(super) fn enter(&self, curve: &Bezier, part: [f64; 2]) -> Option<Meeting> {
-        let downstream = (curve.at(part[1]).p - curve.at(part[0]).p).truncate().dot(self.dir) >= 0.0;
-        let ends = if downstream { part } else { [part[1], part[0]] };
-        let found = ends.map(|start| self.search(curve, part, start));
-        match found {
-            [Some(a), Some(b)] => Some(if a[0] <= b[0] { a } else { b }),
-            [a, b] => a.or(b),
+        let Approach { distance, w, projected } = self.approach(curve, part);
+        let (reach, bulge) = (curve.reach(), curve.bulge() * (part[1] - part[0]).powi(2));
+        if distance > (reach + bulge) * (1.0 + OVERLAP) {
+            return None;
         }
+        let [from, to] = part;
+        if bulge > STRAIGHT * reach && to - from > SHORTEST {
+            let middle = 0.5 * (from + to);
+            return nearer([[from, middle], [middle, to]].map(|half| self.enter(curve, half)));
+        }
+        if projected > reach {
+            return self.search(curve, part, w); // nearly a cone, which is entered once
+        }
+        nearer([from, w, to].map(|start| self.search(curve, part, start)))
     }
 
-    /// From one end of the part.
+    /// Where the chord of a part is nearest.
+    #[inline]
+    fn approach(&self, curve: &Bezier, [from, to]: [f64; 2]) -> Approach {
+        let [a, b] = [from, to].map(|w| self.across(curve.place(w)).0);
+        let chord = b - a;
+        let square = chord.length_squared();
+        let share = if square > 0.0 { (-a.dot(chord) / square).clamp(0.0, 1.0) } else { 0.5 };
+        Approach { distance: (a + chord * share).length(), w: from + share * (to - from), projected: square.sqrt() }
+    }
+
+    /// From one parameter of the part.
     fn search(&self, curve: &Bezier, [from, to]: [f64; 2], start: f64) -> Option<Meeting> {
-        let width = to - from;
+        let (width, overlap) = (to - from, curve.overlap());
         let mut w = start;
         let mut last: Option<[f64; 2]> = None;
         for count in 0..MAX_STEPS {
             let (distance, step, is_met) = self.meet_cone(&curve.at(w))?;
             if step.abs() < SETTLED {
-                let inside = w >= from - OVERLAP && w <= to + OVERLAP;
+                let inside = w >= from - overlap && w <= to + overlap;
                 return (is_met && inside && distance > 0.0).then_some([distance, w]);
             }
             let step = step.clamp(-0.5 * width, 0.5 * width);
@@ -150,15 +201,17 @@ impl Line {
         }
         let discriminant = qb * qb - qa * qc;
         let s = (-qb - discriminant.max(0.0).sqrt()) / qa;
-        Some((along + s, (s * vd - cv) / vv, discriminant >= 0.0))
+        // The foot of the perpendicular moves faster than along a straight line where the curve bends towards the ray.
+        let bend = (self.dir * s - c).dot(jet.dd.truncate());
+        Some((along + s, (s * vd - cv) / (vv - bend).max(0.25 * vv), discriminant >= 0.0))
     }
 
     /// Where a ribbon that is turned to the ray is met. `half` is its half-width at a parameter, in units of the radius.
     pub(super) fn cross(&self, curve: &Bezier, [from, to]: [f64; 2], half: impl Fn(f64) -> f64) -> Option<Meeting> {
-        let (a, b) = (self.across(curve.at(from).p.truncate()).0, self.across(curve.at(to).p.truncate()).0);
-        let chord = b - a;
-        let share = (-a.dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
-        let mut w = from + share * (to - from);
+        let Approach { distance, mut w, .. } = self.approach(curve, [from, to]);
+        if distance > (curve.reach() + curve.bulge() * (to - from).powi(2)) * (1.0 + OVERLAP) {
+            return None;
+        }
         for _ in 0..MAX_STEPS {
             let jet = curve.at(w);
             let (e, along) = self.across(jet.p.truncate());
@@ -172,7 +225,8 @@ impl Line {
                 return None;
             }
             if step.abs() < SETTLED {
-                let inside = w >= from - OVERLAP && w <= to + OVERLAP;
+                let overlap = curve.overlap();
+                let inside = w >= from - overlap && w <= to + overlap;
                 return (inside && e.length() <= jet.p.w * half(w) && along > 0.0).then_some([along, w]);
             }
             w += step.clamp(from - to, to - from);
