@@ -72,6 +72,15 @@ impl Draft<'_> {
     }
 }
 
+/// Whether a shape is placed without scaling it.
+pub(super) fn keeps_lengths(shape: &ShapeDesc) -> bool {
+    let axes = [shape.to_world.x_axis, shape.to_world.y_axis, shape.to_world.z_axis];
+    let rounding = f64::from(f32::EPSILON);
+    axes.iter()
+        .enumerate()
+        .all(|(i, a)| (a.length() - 1.0).abs() < rounding && axes[..i].iter().all(|b| a.dot(*b).abs() < rounding))
+}
+
 /// Whether a PLY file has normals. `None` if it cannot be read: whoever renders the scene is told.
 pub(super) fn has_normals(path: &FileRef) -> Option<bool> {
     read_ply(&path.value).ok().map(|mesh| mesh.normals.is_some())

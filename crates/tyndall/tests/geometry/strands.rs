@@ -82,7 +82,7 @@ fn folds(bezier: &[glam::DVec4; 4]) -> bool {
 fn a_ray_meets_a_tube_where_it_comes_in_and_never_passes_through() {
     let random = &mut Random(41);
     let (mut hits, mut misses) = (0, 0);
-    for round in 0..300 {
+    for round in 0..100 {
         let curves = strand(Style::Round, 4 + round % 3, [0.005, 0.03, 0.1][round % 3], random);
         let beziers: Vec<_> = curves.beziers().collect();
         if beziers.iter().any(folds) {
@@ -128,7 +128,7 @@ fn a_ray_meets_a_tube_where_it_comes_in_and_never_passes_through() {
             assert!(interaction.ng.dot(ray.dir) <= 1e-6, "{interaction:?}");
         }
     }
-    assert!(hits > 300 && misses > 50, "{hits} {misses}");
+    assert!(hits > 100 && misses > 20, "{hits} {misses}");
 }
 
 /// Rays at the axis from all around, also where segments meet.

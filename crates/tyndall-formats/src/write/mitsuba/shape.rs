@@ -11,7 +11,7 @@ use super::placed;
 use crate::build::strands::{strand, strands};
 use crate::build::triangles::triangles_of;
 use crate::desc::{FileRef, MediumInterface, PatchDesc, Radii, ShapeDesc, ShapeKind, StrandsDesc};
-use crate::write::mesh::has_normals;
+use crate::write::mesh::{has_normals, keeps_lengths};
 use crate::write::place::Place;
 
 impl Pen<'_, '_> {
@@ -200,8 +200,8 @@ impl Pen<'_, '_> {
                 element
             }
             ShapeKind::Curve(curve) => self.strands(shape, strand(curve), Transform::new(shape.to_world)?)?,
-            ShapeKind::Strands(StrandsDesc { path, basis, style, radii: Radii::World })
-                if *style == Style::Round && plugin_of(*basis).is_some() =>
+            ShapeKind::Strands(StrandsDesc { path, basis, style: Style::Round, radii })
+                if plugin_of(*basis).is_some() && is_text(path) && (*radii == Radii::World || keeps_lengths(shape)) =>
             {
                 let mut element = Element::plugin("shape", plugin_of(*basis)?);
                 element.string("filename", &self.draft.relative(&path.value, path.span));
@@ -227,9 +227,7 @@ impl Pen<'_, '_> {
 
     /// Segments as B-splines of four points each, in the world.
     fn strands(&mut self, shape: &ShapeDesc, curves: Curves, transform: Transform) -> Option<Element> {
-        if curves.style() != Style::Round {
-            self.draft.differs(shape.span, "in Mitsuba curves are round: ribbons become tubes");
-        }
+        self.lacks(shape.span, "strands but as B-splines in a file: each segment becomes a tube of its own");
         let Some(curves) = curves.placed(&transform) else {
             self.lacks(shape.span, "curves that are stretched unevenly");
             return None;
@@ -256,6 +254,11 @@ impl Pen<'_, '_> {
         let name = self.draft.relative(&path.value, path.span);
         mesh_file(word, &name, shape, flat)
     }
+}
+
+/// Whether a file of strands is Mitsuba's text.
+fn is_text(path: &FileRef) -> bool {
+    path.value.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("hair"))
 }
 
 /// Mitsuba's word for strands of this basis.

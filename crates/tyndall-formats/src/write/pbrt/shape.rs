@@ -1,7 +1,6 @@
 //! Shapes, objects and their instances.
 
 use glam::DMat4;
-use tyndall::math::Transform;
 use tyndall::shape::{Basis, DiskMapping, Style, Turn};
 
 use super::Pen;
@@ -9,7 +8,7 @@ use super::entity::{Entity, quoted};
 use crate::build::triangles::triangles_of;
 use crate::desc::{CurveDesc, MaterialKind, PatchDesc, Radii, ShapeDesc, ShapeKind, StrandsDesc};
 use crate::pbrt::strands::{BASES, STYLES};
-use crate::write::mesh::has_normals;
+use crate::write::mesh::{has_normals, keeps_lengths};
 use crate::write::names::{Names, printable};
 use crate::write::number::shortest;
 
@@ -158,8 +157,7 @@ impl Pen<'_, '_> {
     fn strands(&mut self, strands: &StrandsDesc, shape: &ShapeDesc) -> Entity {
         let StrandsDesc { path, basis, style, radii } = strands;
         self.draft.differs(path.span, "files of strands are read by tyndall only: pbrt has no word for them");
-        let stretches = Transform::new(shape.to_world).is_none_or(|t| (t.least_stretch() - 1.0).abs() > 1e-6);
-        if *radii == Radii::World && stretches {
+        if *radii == Radii::World && !keeps_lengths(shape) {
             self.lacks(path.span, "radii that stay as they are where their strands are scaled");
         }
         let mut entity = Entity::new("Shape", &["hair"]);
