@@ -53,15 +53,15 @@ pub fn parse_hair(bytes: &[u8]) -> Result<Vec<Strand>, String> {
         rest = left;
         Ok(array)
     };
-    let lengths: Vec<usize> = if arrays & 1 != 0 {
-        take("strands", strands, 2)?.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b).into()).collect()
-    } else if strands <= points {
-        vec![segments; strands]
-    } else {
-        return Err(format!("promises {strands} strands of {points} points in all"));
-    };
+    let given = if arrays & 1 != 0 { Some(take("strands", strands, 2)?) } else { None };
     let floats = |bytes: &[u8]| bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b)).collect::<Vec<_>>();
     let positions = floats(take("points", points, 12)?);
+    // Only now it is known that there are so many points, and so no more strands.
+    let lengths: Vec<usize> = match given {
+        Some(bytes) => bytes.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b).into()).collect(),
+        None if strands <= points => vec![segments; strands],
+        None => return Err(format!("promises {strands} strands of {points} points in all")),
+    };
     let widths = if arrays & 4 != 0 { Some(floats(take("thicknesses", points, 4)?)) } else { None };
     let needed = lengths.iter().try_fold(0usize, |sum, length| sum.checked_add(length.checked_add(1)?));
     if needed != Some(points) {
