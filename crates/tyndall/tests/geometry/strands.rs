@@ -143,9 +143,9 @@ fn no_ray_slips_between_the_segments_of_a_strand() {
                 continue;
             }
             let geometry = of(curves, &Transform::IDENTITY);
-            for joint in 1..beziers.len() {
+            for bezier in beziers.iter().skip(1) {
                 for _ in 0..20 {
-                    let (c, tangent) = at(&beziers[joint], 0.0);
+                    let (c, tangent) = at(bezier, 0.0);
                     let across = random.dir().as_dvec3().reject_from(tangent.truncate()).normalize();
                     let near = (random.unit() - 0.5) * 1e-6;
                     let target = c.truncate() + tangent.truncate() * f64::from(near);

@@ -240,7 +240,7 @@ impl Pen<'_, '_> {
         let mut lines = String::new();
         for spline in splines {
             for [x, y, z, radius] in spline.map(|p| p.as_vec4().to_array()) {
-                lines.push_str(&format!("{x} {y} {z} {radius}\n"));
+                lines += &format!("{x} {y} {z} {radius}\n");
             }
             lines.push('\n');
         }

@@ -146,12 +146,11 @@ impl Hair {
         let tilted = self.tilted(p, theta_o);
         let sin_i = sample_longitudinal(self.variance(p), tilted, 1.0 - f64::from(u.x), f64::from(u.y));
         let cos_i = (1.0 - sin_i * sin_i).max(0.0).sqrt();
-        let round = match p {
-            3 => 2.0 * PI * again,
-            _ => {
-                let [gamma_o, gamma_t] = entry.gamma;
-                sample_azimuthal(f64::from(self.scale), exit_azimuth(p, gamma_o, gamma_t), again)
-            }
+        let round = if p == 3 {
+            2.0 * PI * again
+        } else {
+            let [gamma_o, gamma_t] = entry.gamma;
+            sample_azimuthal(f64::from(self.scale), exit_azimuth(p, gamma_o, gamma_t), again)
         };
         let (sin_phi, cos_phi) = (azimuth(wo) + round).sin_cos();
         let wi = glam::DVec3::new(sin_i, cos_i * cos_phi, cos_i * sin_phi).normalize().as_vec3();

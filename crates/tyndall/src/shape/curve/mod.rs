@@ -97,7 +97,7 @@ impl Curves {
     pub fn push(&mut self, basis: Basis, knots: &[Knot]) {
         let points: Vec<DVec4> = knots.iter().map(|k| k.p.as_dvec3().extend(f64::from(k.radius))).collect();
         let first = self.segments.len();
-        let made = basis.beziers(&points).map(|b| Segment { points: b.map(|p| p.as_vec4()), u: [0.0, 1.0] });
+        let made = basis.beziers(&points).map(|b| Segment { points: b.map(DVec4::as_vec4), u: [0.0, 1.0] });
         self.segments.extend(made);
         let count = (self.segments.len() - first) as f32;
         for (i, segment) in self.segments[first..].iter_mut().enumerate() {
@@ -111,7 +111,7 @@ impl Curves {
         let points: Vec<DVec4> = points.iter().map(|p| p.as_dvec3().extend(0.0)).collect();
         let count = basis.segments(points.len()).unwrap_or(0) as f32;
         self.segments.extend(basis.beziers(&points).enumerate().map(|(i, bezier)| {
-            let mut points = bezier.map(|p| p.as_vec4());
+            let mut points = bezier.map(DVec4::as_vec4);
             for (k, p) in points.iter_mut().enumerate() {
                 let share = (i as f32 + k as f32 / 3.0) / count;
                 p.w = root + (tip - root) * share;
@@ -298,5 +298,7 @@ fn cut(bezier: &Bezier, [from, to]: [f32; 2], cuts: u32, found: &mut impl FnMut(
     if cuts == 0 || area(halves[0]) + area(halves[1]) > WORTHWHILE * whole.half_area() {
         return found([from, to], whole);
     }
-    halves.into_iter().for_each(|half| cut(bezier, half, cuts - 1, found));
+    for half in halves {
+        cut(bezier, half, cuts - 1, found);
+    }
 }
