@@ -59,13 +59,19 @@ fn main() -> std::io::Result<()> {
     };
     let mut bytes = b"HAIR".to_vec();
     // Only points: every strand has as many segments, and the same width.
-    [STRANDS, STRANDS * POINTS, 2, POINTS - 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
-    [WIDTH, 0.0, 0.5, 0.5, 0.5].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+    for n in [STRANDS, STRANDS * POINTS, 2, POINTS - 1] {
+        bytes.extend(n.to_le_bytes());
+    }
+    for v in [WIDTH, 0.0, 0.5, 0.5, 0.5] {
+        bytes.extend(v.to_le_bytes());
+    }
     bytes.resize(128, 0);
     for strand in 0..STRANDS {
         for i in 0..POINTS {
             let p = point(strand, i as f32 / (POINTS - 1) as f32);
-            p.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+            for x in p {
+                bytes.extend(x.to_le_bytes());
+            }
         }
     }
     std::fs::write(std::path::Path::new(&directory).join("lock.hair"), bytes)

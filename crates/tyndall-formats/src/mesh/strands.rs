@@ -124,9 +124,13 @@ mod tests {
     /// Two strands, of 1 and of 2 segments, with a width at each of the 5 points.
     fn hair(width: f32, x: f32) -> Vec<u8> {
         let mut bytes = b"HAIR".to_vec();
-        [2u32, 5, 1 | 2 | 4, 0].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        for n in [2u32, 5, 1 | 2 | 4, 0] {
+            bytes.extend(n.to_le_bytes());
+        }
         bytes.resize(HEADER, 0);
-        [1u16, 2].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        for n in [1u16, 2] {
+            bytes.extend(n.to_le_bytes());
+        }
         (0..15).for_each(|i| bytes.extend((if i == 3 { x } else { i as f32 }).to_le_bytes()));
         (0..5).for_each(|_| bytes.extend(width.to_le_bytes()));
         bytes

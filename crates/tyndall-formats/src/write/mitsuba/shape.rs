@@ -1,5 +1,7 @@
 //! Shapes, groups and instances.
 
+use std::fmt::Write;
+
 use glam::{DMat4, DVec3, DVec4};
 use tyndall::math::{Transform, Vec3};
 use tyndall::shape::{Basis, Curves, DiskMapping, Mesh, Patch, SpherePart, Style, Turn};
@@ -240,7 +242,8 @@ impl Pen<'_, '_> {
         let mut lines = String::new();
         for spline in splines {
             for [x, y, z, radius] in spline.map(|p| p.as_vec4().to_array()) {
-                lines += &format!("{x} {y} {z} {radius}\n");
+                // Writing to memory cannot fail.
+                let _ = writeln!(lines, "{x} {y} {z} {radius}");
             }
             lines.push('\n');
         }
