@@ -19,7 +19,7 @@ use tyndall_formats::{mitsuba, pbrt};
 enum Status {
     Supported,
     /// It is read and changes nothing, or not what the language says.
-    Differs(String),
+    Differs(Vec<String>),
     NotYet,
 }
 
@@ -153,11 +153,11 @@ impl Language {
         let text: Vec<String> = needed.chain(before).chain(extra.copied()).map(|p| (self.param)(&p)).collect();
         let scene = (self.scene)(kind, &text.join(" "));
         match (self.read)(&scene) {
-            Ok(desc) => match (desc.warnings.first(), desc.ignored.last()) {
-                (Some(warning), _) => Status::Differs(warning.message.clone()),
-                (None, Some(word)) => Status::Differs(word.reason.into()),
-                (None, None) => Status::Supported,
-            },
+            Ok(desc) => {
+                let warned = desc.warnings.iter().map(|warning| warning.message.clone());
+                let reasons: Vec<String> = warned.chain(desc.ignored.iter().map(|word| word.reason.into())).collect();
+                if reasons.is_empty() { Status::Supported } else { Status::Differs(reasons) }
+            }
             Err(faults) if faults.errors.iter().all(|e| e.severity == Severity::NotYet) => Status::NotYet,
             Err(faults) => {
                 wrong.push(format!(
@@ -176,15 +176,16 @@ impl Language {
         if status == Status::NotYet {
             return format!("| `{name}` | *not yet* | |\n");
         }
-        let own = if let Status::Differs(reason) = &status { format!("{reason}. ") } else { String::new() };
+        let own: &[String] = if let Status::Differs(reasons) = &status { reasons } else { &[] };
         let (mut read, mut other) = (Vec::new(), Vec::new());
         for param in kind.params.iter().filter(|p| !p.title().is_empty()) {
             let title = param.title();
             let mark = if param.is_ours { OURS } else { "" };
             let alone = if param.needed { Status::Supported } else { self.status(kind, Some(param), wrong) };
             match alone {
-                Status::Differs(ref reason) if alone != status => {
-                    other.push(format!("`{title}`: {reason}"));
+                Status::Differs(mut reasons) if reasons.iter().any(|reason| !own.contains(reason)) => {
+                    reasons.retain(|reason| !own.contains(reason));
+                    other.push(format!("`{title}`: {}", reasons.join("; ")));
                 }
                 Status::Supported | Status::Differs(_) => read.push(format!("`{title}`{mark}")),
                 Status::NotYet => other.push(format!("`{title}`: *not yet*")),
@@ -192,6 +193,7 @@ impl Language {
         }
         read.dedup();
         let mark = if kind.is_ours { OURS } else { "" };
+        let own: String = own.iter().map(|reason| format!("{reason}. ")).collect();
         format!("| `{name}`{mark} | {} | {own}{} |\n", read.join(" "), other.join("; "))
     }
 

@@ -1,9 +1,11 @@
 //! What a surface is made of, as the scene has it: spectra that become a [`Bsdf`] at the wavelengths of a path.
 
 mod coated;
+mod hair;
 mod principled;
 
 pub use coated::{CoatedBase, CoatedMaterial};
+pub use hair::{HairColour, HairTextures, Pigments};
 pub use principled::{BurleyTextures, PrincipledTextures, ThinTextures};
 
 use std::sync::Arc;
@@ -104,6 +106,8 @@ pub enum Material {
     PrincipledThin(Box<ThinTextures>),
     /// A base under a coat, rough or smooth, clear or cloudy.
     Coated(Box<CoatedMaterial>),
+    /// A fibre of hair.
+    Hair(Box<HairTextures>),
     /// As it was measured.
     Measured {
         /// What was.
@@ -256,6 +260,7 @@ impl Material {
             Self::Principled(textures) => textures.bsdf(at, wavelengths),
             Self::PrincipledThin(textures) => textures.bsdf(at, wavelengths),
             Self::Coated(coated) => coated.bsdf(at, wavelengths, hero),
+            Self::Hair(textures) => textures.bsdf(at, wavelengths),
             Self::Measured { tables, sides } => Bsdf::Measured(Measured::new(tables, wavelengths)).on(*sides),
             // What is made of others has none of its own: see [`crate::scene::Scene::meet`].
             Self::Null | Self::Hole | Self::Mix { .. } | Self::TwoFaced { .. } | Self::Embossed { .. } => Bsdf::Null,

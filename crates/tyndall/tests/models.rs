@@ -16,6 +16,8 @@ use tyndall::spectrum::Lanes;
 
 #[path = "models/fresnel.rs"]
 mod fresnel;
+#[path = "models/hair.rs"]
+mod hair;
 #[path = "models/mixed.rs"]
 mod mixed;
 /// Every model with its parameters in common and extreme settings.
@@ -23,6 +25,7 @@ fn bsdfs() -> Vec<(&'static str, Bsdf<'static>)> {
     let ochre = Lanes::rgb(0.8, 0.5, 0.2);
     let (gold_eta, gold_k) = (Lanes::rgb(0.14, 0.37, 1.44), Lanes::rgb(3.98, 2.39, 1.60));
     let mut all = mixed::rows();
+    all.extend(hair::rows());
     all.extend([
         ("diffuse", Bsdf::diffuse(ochre)),
         ("diffuse on the outside", Bsdf::diffuse(ochre).on(Sides::Outside)),

@@ -163,7 +163,7 @@ fn compare_colours(scene: &Path, options: &Options, tyndall: &Tyndall) -> Result
     })
 }
 
-/// The pbrt scenes of the repository that tyndall can read so far: hair is for a later day.
+/// The pbrt scenes of the repository.
 fn pbrt_scenes(filter: &str) -> Result<Vec<PathBuf>> {
     let directory = root().join("scenes/peers/pbrt");
     if !directory.is_dir() {
@@ -174,7 +174,7 @@ fn pbrt_scenes(filter: &str) -> Result<Vec<PathBuf>> {
     for entry in std::fs::read_dir(directory)? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if name.ends_with(".pbrt") && name.contains(filter) && !name.contains("hair") {
+        if name.ends_with(".pbrt") && name.contains(filter) {
             scenes.push(path.clone());
         }
     }

@@ -59,6 +59,7 @@ fn geometry(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
         (census.disks, "disks"),
         (census.cylinders, "cylinders"),
         (census.patches, "patches"),
+        (census.curves, "segments of strands"),
         (census.instances, "instances"),
     ];
     let present: Vec<String> = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();

@@ -199,6 +199,8 @@ pub(super) fn pieces(geometry: &Geometry, object: ObjectId) -> Pieces {
         },
         Shape::Cylinder(cylinder) => EmitterShape::Revolved(Revolved::cylinder(cylinder)),
         Shape::Patch(patch) => EmitterShape::Patch(*patch),
+        // Strands do not shine.
+        Shape::Curves(_) => return Pieces::Each(Vec::new()),
         Shape::Mesh(mesh) => match as_parallelogram(mesh) {
             Some(parallelogram) => parallelogram,
             None => return triangles(mesh),

@@ -60,6 +60,7 @@ pub(crate) fn parts(kind: &MaterialKind) -> &[Spanned<MaterialId>] {
         | MaterialKind::Principled(_)
         | MaterialKind::PrincipledThin(_)
         | MaterialKind::Coated(_)
+        | MaterialKind::Hair(_)
         | MaterialKind::Measured { .. }
         | MaterialKind::Interface => &[],
     }

@@ -105,6 +105,7 @@ impl Builder<'_> {
             MaterialKind::Principled(desc) => self.principled(desc, sides),
             MaterialKind::PrincipledThin(desc) => self.principled_thin(desc),
             MaterialKind::Coated(coated) => self.coated(coated).map(|coated| Material::Coated(Box::new(coated))),
+            MaterialKind::Hair(hair) => self.hair(hair).map(|hair| Material::Hair(Box::new(hair))),
             MaterialKind::Measured { path } => self.measured(path).map(|tables| Material::Measured { tables, sides }),
             MaterialKind::Interface => Some(Material::Null),
             MaterialKind::Mix { of, amount } => Some(Material::Mix {

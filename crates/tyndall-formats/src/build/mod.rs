@@ -11,6 +11,7 @@ mod painted;
 mod principled;
 pub(crate) mod shapes;
 pub(crate) mod spectra;
+pub(crate) mod strands;
 mod textures;
 pub(crate) mod triangles;
 

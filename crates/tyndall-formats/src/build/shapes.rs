@@ -18,6 +18,7 @@ use super::{
     material_id, medium_id,
     painted::Painting,
     spectra::Measure,
+    strands::{strand, strands},
     triangles::{Normals, cube, finished, inline_mesh, mesh_of, patches_of, rectangle, wound_by_normals},
 };
 use crate::{
@@ -152,6 +153,17 @@ impl<'a> Builder<'a> {
                 }
                 let mesh = self.mesh_file(mesh, path, normals, *flip_tex_coords)?;
                 vec![gathered.builder.add_mesh(mesh, &transform, reversed)]
+            }
+            ShapeKind::Curve(curve) => {
+                self.check_strands(desc)?;
+                vec![gathered.builder.add_curves(strand(curve), &transform)]
+            }
+            ShapeKind::Strands(file) => {
+                self.check_strands(desc)?;
+                match strands(file, &transform) {
+                    Ok((curves, transform)) => vec![gathered.builder.add_curves(curves, &transform)],
+                    Err(error) => return self.fail(error),
+                }
             }
             ShapeKind::Subdivision { positions, indices, levels } => {
                 let positions: Vec<_> = positions.iter().copied().map(Vec3::from_array).collect();

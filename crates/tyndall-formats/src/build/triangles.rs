@@ -76,6 +76,8 @@ pub(crate) fn triangles_of(kind: &ShapeKind) -> Option<Result<Mesh, MeshError>> 
         ShapeKind::Sphere { .. }
         | ShapeKind::Disk { .. }
         | ShapeKind::Cylinder { .. }
+        | ShapeKind::Curve(_)
+        | ShapeKind::Strands(_)
         | ShapeKind::BilinearMesh(_)
         | ShapeKind::Ply { displacement: Some(_), .. } => return None,
     })

@@ -2,7 +2,7 @@
 
 use tyndall::relief::Rule;
 
-use super::{FileRef, MaterialId, PrincipledDesc, PrincipledThinDesc, Span, Spanned, SpectrumDesc, Varying};
+use super::{FileRef, HairDesc, MaterialId, PrincipledDesc, PrincipledThinDesc, Span, Spanned, SpectrumDesc, Varying};
 
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,6 +83,8 @@ pub enum MaterialKind {
     PrincipledThin(Box<PrincipledThinDesc>),
     /// A base under a coat of a dielectric (pbrt).
     Coated(Box<CoatedDesc>),
+    /// A fibre of hair.
+    Hair(Box<HairDesc>),
     /// A material as it was measured, in a file of RGL's.
     Measured {
         /// The file.

@@ -19,6 +19,7 @@
 //! - **Colours** are linear sRGB.
 
 mod camera;
+mod hair;
 mod light;
 mod material;
 mod medium;
@@ -35,6 +36,7 @@ pub use camera::{
     ApertureDesc, CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc,
     ImageWindow, RealisticDesc, SphereMapping, ThinLensDesc,
 };
+pub use hair::{HairColourDesc, HairDesc};
 pub use light::{
     AreaLightDesc, EmissionDesc, EnvironmentMapping, Evenness, LightDesc, LightKind, Magnitude, SpotFalloff, Spread,
 };
@@ -45,7 +47,9 @@ pub use material::{
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
 pub use principled::{BurleyDesc, PrincipledDesc, PrincipledThinDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
-pub use shape::{DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
+pub use shape::{
+    CurveDesc, DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, Radii, ShapeDesc, ShapeKind, StrandsDesc,
+};
 pub use spectrum::SpectrumDesc;
 pub use texture::{
     Board, Encoding, ImageDesc, MappingDesc, NoiseDesc, TextureDesc, TextureId, TextureKind, Varying, WrapKind,
@@ -120,9 +124,10 @@ impl SceneDesc {
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let shapes = self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes));
         let meshes = shapes.filter_map(|shape| match &shape.kind {
-            ShapeKind::Ply { path, .. } | ShapeKind::Obj { path, .. } | ShapeKind::Serialized { path, .. } => {
-                Some(path)
-            }
+            ShapeKind::Ply { path, .. }
+            | ShapeKind::Obj { path, .. }
+            | ShapeKind::Serialized { path, .. }
+            | ShapeKind::Strands(StrandsDesc { path, .. }) => Some(path),
             _ => None,
         });
         let pictures = self.textures.iter().filter_map(|texture| match &texture.kind {

@@ -1,7 +1,7 @@
 //! Shapes, groups and instances. Geometry stays in the shape's own space.
 
 use glam::DMat4;
-use tyndall::shape::{DiskMapping, SpherePart, Turn};
+use tyndall::shape::{Basis, DiskMapping, SpherePart, Style, Turn};
 
 use super::{AreaLightDesc, FileRef, GroupId, MaterialId, MediumInterface, Span, Spanned, Varying};
 
@@ -114,6 +114,10 @@ pub enum ShapeKind {
         /// Whether normals of the file are left out and each face is flat; a mesh without normals is smoothed otherwise.
         face_normals: bool,
     },
+    /// A strand written in the scene (pbrt).
+    Curve(CurveDesc),
+    /// Strands of a file.
+    Strands(StrandsDesc),
 }
 
 impl ShapeKind {
@@ -121,6 +125,44 @@ impl ShapeKind {
     pub const fn sphere(radius: f64) -> Self {
         Self::Sphere { radius, part: SpherePart::WHOLE }
     }
+}
+
+/// A strand. Checked by the reader: the points make a whole number of segments, widths are not negative and not both 0, and a
+/// ribbon has one normal more than it has segments, which others have none of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveDesc {
+    /// How the points make a curve.
+    pub basis: Basis,
+    /// What is around it.
+    pub style: Style,
+    /// Control points.
+    pub points: Vec<[f32; 3]>,
+    /// Normals of a ribbon.
+    pub normals: Vec<[f32; 3]>,
+    /// Widths at the two ends.
+    pub widths: [f64; 2],
+}
+
+/// Strands of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrandsDesc {
+    /// The file: cyHair's if its name ends in `.hair`, else lines of x, y, z and radius, and an empty one after each strand.
+    pub path: FileRef,
+    /// How the points of a strand make a curve. A curve through all but the ends of its points has its ends twice.
+    pub basis: Basis,
+    /// What is around it.
+    pub style: Style,
+    /// Whose lengths the radii are.
+    pub radii: Radii,
+}
+
+/// Whose lengths radii are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Radii {
+    /// Of the shape's own space, as its points.
+    Own,
+    /// Of the world, whatever happens to the points (Mitsuba).
+    World,
 }
 
 /// Heights over a mesh.

@@ -62,6 +62,7 @@ impl MaterialKind {
             Self::Principled(solid) => solid.quantities(),
             Self::PrincipledThin(sheet) => sheet.quantities(),
             Self::Coated(coated) => coated.quantities(),
+            Self::Hair(hair) => hair.quantities(),
             Self::Mix { amount, .. } => vec![amount],
             Self::Mask { opacity, .. } => vec![opacity],
             Self::Embossed { map: ReliefMap::Heights { texture, .. } | ReliefMap::Normals(texture), .. } => {

@@ -1,4 +1,4 @@
-//! Triangle meshes as they stand in files: PLY, OBJ and Mitsuba's serialized.
+//! Triangle meshes and strands as they stand in files: PLY, OBJ and Mitsuba's serialized; cyHair and lines of points.
 //!
 //! A file is read whole, and nothing is allocated that its own bytes could not fill, so that a header which promises
 //! 10¹² vertices is an error and not an exhausted machine. What a reader returns has passed [`TriangleMesh::checked`].
@@ -9,6 +9,7 @@ mod obj;
 mod ply;
 mod ply_binary;
 mod serialized;
+mod strands;
 mod subdivide;
 
 use std::path::{Path, PathBuf};
@@ -21,6 +22,7 @@ pub use displace::displace;
 pub use obj::{parse_obj, read_obj};
 pub use ply::{parse_ply, read_ply, write_ply};
 pub use serialized::{parse_serialized, read_serialized};
+pub use strands::{Strand, parse_hair, parse_strands, read_strands};
 pub use subdivide::subdivide;
 
 /// The longest mesh that a compressed file may hold \[bytes\]: some 50 million triangles.
@@ -94,10 +96,7 @@ impl TriangleMesh {
 }
 
 /// Reads a whole file and hands its bytes to `parse`; either may find it at fault.
-fn read_with(
-    path: &Path,
-    parse: impl FnOnce(Vec<u8>) -> Result<TriangleMesh, String>,
-) -> Result<TriangleMesh, MeshError> {
+fn read_with<T>(path: &Path, parse: impl FnOnce(Vec<u8>) -> Result<T, String>) -> Result<T, MeshError> {
     std::fs::read(path)
         .map_err(|error| error.to_string())
         .and_then(|bytes| if gzip::is_gzip(path) { gzip::inflate(&bytes, MAX_INFLATED_BYTES) } else { Ok(bytes) })

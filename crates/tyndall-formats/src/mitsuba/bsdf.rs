@@ -88,7 +88,7 @@ impl<'t> Builder<'t> {
         let plugin = words::plugin(child.element, &mut self.report)?;
         let what = match plugin {
             "twosided" => "two-sided already",
-            "dielectric" | "roughdielectric" | "thindielectric" | "principledthin" | "null" | "mask" => {
+            "dielectric" | "roughdielectric" | "thindielectric" | "principledthin" | "null" | "mask" | "hair" => {
                 "not a surface that only reflects"
             }
             "principled" if super::principled::is_clear(child.element) => "not a surface that only reflects",
@@ -156,6 +156,7 @@ impl<'t> Builder<'t> {
                 };
                 MaterialKind::Measured { path: self.file(name) }
             }
+            "hair" => self.hair(&mut object),
             "principled" => self.principled(&mut object),
             "principledthin" => self.principled_thin(&mut object),
             "blendbsdf" => {
@@ -269,7 +270,7 @@ impl<'t> Builder<'t> {
 }
 
 /// `int_ior` over `ext_ior`.
-fn relative_index(object: &mut Object, default: &str, report: &mut Report) -> Spanned<SpectrumDesc> {
+pub(super) fn relative_index(object: &mut Object, default: &str, report: &mut Report) -> Spanned<SpectrumDesc> {
     let inside = index(object, "int_ior", default, report);
     let outside = index(object, "ext_ior", "air", report);
     Spanned::new(SpectrumDesc::Constant(inside.value / outside.value), inside.span)

@@ -17,6 +17,7 @@ mod aov;
 mod bsdf;
 mod camera;
 mod emitter;
+mod hair;
 mod integrator;
 mod medium;
 mod number;

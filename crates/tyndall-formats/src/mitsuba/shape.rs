@@ -1,15 +1,16 @@
-//! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `cylinder`, `obj`, `ply`, `serialized`, and `shapegroup` with `instance`.
+//! `<shape>`: `sphere`, `rectangle`, `cube`, `disk`, `cylinder`, `obj`, `ply`, `serialized`, `bsplinecurve`,
+//! `linearcurve`, and `shapegroup` with `instance`.
 
 use glam::{DMat3, DMat4, DVec3};
-use tyndall::shape::{DiskMapping, SpherePart, Turn};
+use tyndall::shape::{Basis, DiskMapping, SpherePart, Style, Turn};
 
 use super::object::Object;
 use super::scene::Builder;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
-    GroupDesc, GroupId, InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MediumInterface, ShapeDesc, ShapeKind,
-    Varying,
+    GroupDesc, GroupId, InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MediumInterface, Radii, ShapeDesc,
+    ShapeKind, StrandsDesc, Varying,
 };
 use crate::error::SceneError;
 use crate::source::Spanned;
@@ -106,6 +107,16 @@ impl<'t> Builder<'t> {
             "rectangle" | "cube" => {
                 object.ignore(&["face_normals"], "its faces are flat", report);
                 if plugin == "cube" { ShapeKind::Cube } else { ShapeKind::Rectangle }
+            }
+            "bsplinecurve" | "linearcurve" => {
+                let Some(name) = object.string("filename", report) else {
+                    let message = format!("the shape \"{plugin}\" lacks a \"filename\"");
+                    report.errors.push(SceneError::at(object.element.span, message));
+                    return None;
+                };
+                let basis = if plugin == "linearcurve" { Basis::Linear } else { Basis::CubicBSpline };
+                let (path, radii) = (self.file(name), Radii::World);
+                ShapeKind::Strands(StrandsDesc { path, basis, style: Style::Round, radii })
             }
             _ => {
                 let face_normals = object.flag("face_normals", false, report);

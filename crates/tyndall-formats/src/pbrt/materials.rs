@@ -9,27 +9,27 @@ use super::params::Params;
 use super::parser::Statement;
 use super::textures::Textures;
 use crate::desc::{
-    BaseDesc, CoatedDesc, ConductorOptics, Encoding, ImageDesc, MappingDesc, MaterialDesc, MaterialId, MaterialKind,
-    MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, TextureDesc, TextureId, TextureKind,
-    Varying, WrapKind,
+    BaseDesc, CoatedDesc, ConductorOptics, Encoding, HairColourDesc, HairDesc, ImageDesc, MappingDesc, MaterialDesc,
+    MaterialId, MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, SpectrumDesc, TextureDesc,
+    TextureId, TextureKind, Varying, WrapKind,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
 
-const MATERIALS: [&str; 11] = [
+const MATERIALS: [&str; 12] = [
     "coatedconductor",
     "coateddiffuse",
     "conductor",
     "dielectric",
     "diffuse",
     "diffusetransmission",
+    "hair",
     "interface",
     "measured",
     "mix",
     "subsurface",
     "thindielectric",
 ];
-const LATER_MATERIALS: [&str; 1] = ["hair"];
 
 impl MaterialDesc {
     /// The material of shapes before any `Material`.
@@ -86,12 +86,13 @@ impl Reader {
             "diffusetransmission" => diffuse_transmission(&mut p, &self.textures),
             "coateddiffuse" => coated_diffuse(&mut p, &self.textures),
             "coatedconductor" => coated_conductor(&mut p, &self.textures),
+            "hair" => hair(&mut p, &self.textures),
             "measured" => measured(&mut p),
             "mix" => self.mix(&mut p),
             "subsurface" => self.subsurface(span, &mut p),
             "interface" | "none" | "" => MaterialKind::Interface,
             _ => {
-                self.unknown_kind("material", kind, &MATERIALS, &LATER_MATERIALS);
+                self.unknown_kind("material", kind, &MATERIALS, &[]);
                 return MaterialDesc { name, ..MaterialDesc::pbrt_default(span) };
             }
         };
@@ -248,6 +249,44 @@ fn diffuse_transmission(p: &mut Params, textures: &Textures) -> MaterialKind {
         transmittance: p.varying("transmittance", 0.25, textures),
         scale: p.not_negative("scale", 1.0).value,
     }
+}
+
+/// By absorption, by colour, or by pigments: what is given first of these.
+fn hair(p: &mut Params, textures: &Textures) -> MaterialKind {
+    let sigma_a = p.varying_opt("sigma_a", textures);
+    let reflectance = p.varying_opt("reflectance", textures);
+    let colour = p.varying_opt("color", textures);
+    let pigments = ["eumelanin", "pheomelanin"].map(|name| p.amount(name, textures));
+    let given: Vec<_> = [&sigma_a, &reflectance, &colour].into_iter().flatten().map(|given| given.span).collect();
+    let of_pigments = pigments.iter().flatten().map(|given| given.span).next();
+    if let [first, second, ..] = given.iter().copied().chain(of_pigments).collect::<Vec<_>>()[..] {
+        let message = "the colour of hair is said by \"sigma_a\", by \"reflectance\", or by pigments";
+        p.error(SceneError::at(second, message).help("leave out one of them").related(first, "given here too"));
+    }
+    let of = |name: Option<Spanned<Varying>>, p: &Params, default: f64| {
+        name.unwrap_or(Spanned::new(Varying::constant(default), p.span))
+    };
+    let colour = match (sigma_a, reflectance.or(colour)) {
+        (Some(sigma_a), _) => HairColourDesc::SigmaA(sigma_a),
+        (None, Some(colour)) => HairColourDesc::Reflectance(colour),
+        (None, None) => {
+            // Brown.
+            let eumelanin = if pigments[1].is_some() { 0.0 } else { 1.3 };
+            let [brown, red] = pigments;
+            HairColourDesc::Pigments { eumelanin: of(brown, p, eumelanin), pheomelanin: of(red, p, 0.0) }
+        }
+    };
+    let number = |p: &mut Params, name, default| {
+        let found = p.number(name, textures, |_| true);
+        of(found, p, default)
+    };
+    MaterialKind::Hair(Box::new(HairDesc {
+        colour,
+        eta: number(p, "eta", 1.55),
+        beta_m: number(p, "beta_m", 0.3),
+        beta_n: number(p, "beta_n", 0.3),
+        alpha: number(p, "alpha", 2.0),
+    }))
 }
 
 fn measured(p: &mut Params) -> MaterialKind {

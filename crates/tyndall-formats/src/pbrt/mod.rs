@@ -28,6 +28,7 @@ mod parser;
 mod settings;
 mod shapes;
 pub(crate) mod state;
+pub(crate) mod strands;
 mod subsurface;
 #[cfg(test)]
 mod tests;

@@ -11,14 +11,15 @@ use crate::desc::{DisplacementDesc, MaterialDesc, MaterialId, MeshDesc, PatchDes
 use crate::error::SceneError;
 use crate::source::Spanned;
 
-const SHAPES: [&str; 7] = ["sphere", "disk", "cylinder", "trianglemesh", "bilinearmesh", "plymesh", "loopsubdiv"];
-const LATER_SHAPES: [&str; 1] = ["curve"];
+/// `hair` is tyndall's own.
+const SHAPES: [&str; 9] =
+    ["sphere", "disk", "cylinder", "trianglemesh", "bilinearmesh", "plymesh", "loopsubdiv", "curve", "hair"];
 
 impl Reader {
     pub(super) fn shape(&mut self, mut s: Statement<'_>) {
         let name = s.names[0].clone();
         if !SHAPES.contains(&&*name.value) {
-            return self.unknown_kind("shape", &name, &SHAPES, &LATER_SHAPES);
+            return self.unknown_kind("shape", &name, &SHAPES, &[]);
         }
         let defaults = self.state.now.defaults.shape.clone();
         let mut p = self.params("shape", &mut s, &defaults);
@@ -29,6 +30,8 @@ impl Reader {
             "trianglemesh" => triangles(&mut p).map(ShapeKind::TriangleMesh),
             "bilinearmesh" => patches(&mut p).map(ShapeKind::BilinearMesh),
             "loopsubdiv" => subdivision(&mut p),
+            "curve" => super::strands::curve(&mut p),
+            "hair" => super::strands::hair(&mut p),
             _ => ply(&mut p, &self.textures, self.settings.displacement_edge_scale.unwrap_or(1.0)),
         };
         let opacity = p.number("alpha", &self.textures, |_| true).filter(|a| a.value.number().is_none_or(|a| a < 1.0));

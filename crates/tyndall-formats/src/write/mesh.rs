@@ -38,10 +38,15 @@ impl Draft<'_> {
         let mut bytes = Vec::new();
         // Writing to memory cannot fail.
         let _ = write_ply(&triangles, &mut bytes);
-        // The same mesh twice is one file.
+        self.file_beside(shape, "ply", bytes)
+    }
+
+    /// The name of a file with these bytes, which are those of a shape. The same bytes twice are one file.
+    pub(super) fn file_beside(&mut self, shape: &ShapeDesc, ending: &str, bytes: Vec<u8>) -> String {
         let known = self.meshes.iter().find(|(_, known)| *known == bytes).map(|(path, _)| path.clone());
         let path = known.unwrap_or_else(|| {
-            let path = self.directory.join(format!("{}-{}.ply", for_a_file(&self.stem), self.free_name(shape)));
+            let name = format!("{}-{}.{ending}", for_a_file(&self.stem), self.free_name(shape));
+            let path = self.directory.join(name);
             self.meshes.push((path.clone(), bytes));
             path
         });
@@ -72,6 +77,15 @@ impl Draft<'_> {
 pub(super) fn has_normals_against_winding(kind: &ShapeKind) -> bool {
     let Some(Ok(mesh)) = triangles_of(kind) else { return false };
     mesh.indices.iter().any(|corners| is_against_normals(&mesh, *corners))
+}
+
+/// Whether a shape is placed without scaling it.
+pub(super) fn keeps_lengths(shape: &ShapeDesc) -> bool {
+    let axes = [shape.to_world.x_axis, shape.to_world.y_axis, shape.to_world.z_axis];
+    let rounding = f64::from(f32::EPSILON);
+    axes.iter()
+        .enumerate()
+        .all(|(i, a)| (a.length() - 1.0).abs() < rounding && axes[..i].iter().all(|b| a.dot(*b).abs() < rounding))
 }
 
 /// Whether a PLY file has normals. `None` if it cannot be read: whoever renders the scene is told.

@@ -15,6 +15,7 @@
 //! To add a model: one file, one variant with its forwarding lines, one row in the table of `tests/models.rs`.
 
 pub mod fresnel;
+pub mod hair;
 pub mod measured;
 pub mod microfacet;
 
@@ -48,6 +49,7 @@ pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Lanes;
+use hair::Hair;
 use measured::Measured;
 use microfacet::{Distribution, Microfacets, Shadowing};
 
@@ -140,6 +142,8 @@ pub enum Bsdf<'s> {
     Coated(Coated),
     /// As it was measured.
     Measured(Measured<'s>),
+    /// A fibre of hair.
+    Hair(Hair),
     /// No surface at all: a mere boundary of media.
     Null,
 }
@@ -190,7 +194,7 @@ impl Bsdf<'_> {
 
     /// The same model with every reflection multiplied by `reflectance` and every transmission by `transmittance`
     /// (Mitsuba's `specular_reflectance` and `specular_transmittance`); 1 is physical, and more gains energy. What is
-    /// under a coat and what was measured take no tints.
+    /// under a coat, what was measured and hair take no tints.
     #[must_use]
     pub fn tinted(mut self, reflectance: Lanes, transmittance: Lanes) -> Self {
         match &mut self {
@@ -210,7 +214,12 @@ impl Bsdf<'_> {
                 model.transmittance *= transmittance;
             }
             // Their colours tint them.
-            Self::Coated(_) | Self::Measured(_) | Self::Principled(_) | Self::PrincipledThin(_) | Self::Null => {}
+            Self::Coated(_)
+            | Self::Measured(_)
+            | Self::Principled(_)
+            | Self::PrincipledThin(_)
+            | Self::Hair(_)
+            | Self::Null => {}
         }
         self
     }
@@ -242,6 +251,7 @@ impl Bsdf<'_> {
             | Self::PrincipledThin(_)
             | Self::Coated(_)
             | Self::Measured(_)
+            | Self::Hair(_)
             | Self::Null => return self,
         };
         (microfacets.distribution, microfacets.shadowing) = (distribution, shadowing);
@@ -265,6 +275,7 @@ impl Bsdf<'_> {
             | Self::Principled(_)
             | Self::PrincipledThin(_)
             | Self::Coated(_)
+            | Self::Hair(_)
             | Self::Null => {}
         }
         self
@@ -284,6 +295,7 @@ impl Bsdf<'_> {
             Self::PrincipledThin(model) => model.eval(wo, wi),
             Self::Coated(model) => model.eval(wo, wi),
             Self::Measured(model) => model.eval(wo, wi),
+            Self::Hair(model) => model.eval(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
@@ -302,6 +314,7 @@ impl Bsdf<'_> {
             Self::PrincipledThin(model) => model.pdf(wo, wi),
             Self::Coated(model) => model.pdf(wo, wi),
             Self::Measured(model) => model.pdf(wo, wi),
+            Self::Hair(model) => model.pdf(wo, wi),
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
         }
     }
@@ -323,6 +336,7 @@ impl Bsdf<'_> {
             Self::PrincipledThin(model) => model.sample(wo, u_lobe, u),
             Self::Coated(model) => model.sample(wo, u_lobe, u),
             Self::Measured(model) => model.sample(wo, u),
+            Self::Hair(model) => model.sample(wo, u_lobe, u),
             Self::Null => Some(straight_on(wo)),
         }
     }
@@ -353,7 +367,7 @@ impl Bsdf<'_> {
             Self::ThinDielectric(model) => !model.transmittance.is_zero(),
             Self::DiffuseTransmission(model) => !model.transmittance.is_zero(),
             Self::Principled(model) => model.transmits(),
-            Self::PrincipledThin(_) | Self::Null => true,
+            Self::PrincipledThin(_) | Self::Hair(_) | Self::Null => true,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What lies on a short way, all of it: faces that coincide are each told.
 
 use super::{
-    Geometry, Hit, Interaction, ObjectId,
+    Geometry, Hit, Interaction, ObjectId, Shape,
     bvh::{NONE, Primitive, between::between},
     sphere,
 };
@@ -54,6 +54,11 @@ impl Geometry {
                     index => self.instances[index as usize].placement.ray_to_local(ray),
                 };
                 self.shapes[object as usize].intersect(&ray, length).map(|(t, uv)| of(object, instance, t, uv))
+            }
+            Primitive::Curve { object, ref piece } => {
+                let Shape::Curves(curves) = &self.shapes[object as usize] else { return None };
+                let hit = |(t, uv)| Hit { prim: piece.segment, ..of(object, NONE, t, uv) };
+                curves.intersect(piece, ray, length).map(hit)
             }
             Primitive::Instance(_) => None, // groups hold no instances
         }

@@ -1,7 +1,7 @@
 //! Gathers shapes and places them in the world.
 
 use super::{
-    Cylinder, Disk, Geometry, Mesh, ObjectId, Patch, Shape, Sphere,
+    Curves, Cylinder, Disk, Geometry, Mesh, ObjectId, Patch, Shape, Sphere,
     bvh::{
         NONE, Primitive, Tree, TriangleId,
         build::{Entry, build},
@@ -39,6 +39,17 @@ pub enum ShapeError {
         /// Its value.
         value: f32,
     },
+    /// A ribbon does not have one normal more than it has segments.
+    #[error("a ribbon of {segments} segments has normals for {normals}")]
+    RibbonNormals {
+        /// How many segments there are.
+        segments: usize,
+        /// For how many there are normals.
+        normals: usize,
+    },
+    /// The transform would make the cross-sections of strands ellipses.
+    #[error("curves cannot be stretched unevenly: scale their points instead")]
+    UnevenCurves,
     /// A coordinate is infinite or not a number (perhaps after the transform).
     #[error("a coordinate is not finite")]
     NotFinite,
@@ -161,6 +172,19 @@ impl GeometryBuilder {
         self.add(patch.as_triangles().map_or(Shape::Patch(patch), Shape::Mesh))
     }
 
+    /// Adds strands.
+    ///
+    /// # Errors
+    ///
+    /// If a coordinate is not finite, all widths are 0 or one is negative, a ribbon lacks normals, or the transform stretches
+    /// unevenly.
+    pub fn add_curves(&mut self, curves: Curves, transform: &Transform) -> Result<ObjectId, ShapeError> {
+        curves.check()?;
+        let curves = curves.placed(transform).ok_or(ShapeError::UnevenCurves)?;
+        curves.check()?;
+        self.add(Shape::Curves(curves))
+    }
+
     /// Starts a group: the objects added until [`Self::end_group`] are seen only through its instances. Groups do not
     /// nest.
     pub fn begin_group(&mut self) -> GroupId {
@@ -222,6 +246,9 @@ impl GeometryBuilder {
                     (0..mesh.indices.len() as u32)
                         .map(|prim| Entry::Triangle(TriangleId { object, prim }, mesh.triangle(prim))),
                 ),
+                Shape::Curves(curves) => entries.extend(
+                    curves.pieces().map(|(piece, bounds)| Entry::Other(Primitive::Curve { object, piece }, bounds)),
+                ),
                 shape => entries.push(Entry::Other(self.primitive(object), shape.bounds())),
             }
         }
@@ -241,7 +268,7 @@ impl GeometryBuilder {
         }
     }
 
-    /// What an instance puts into the world's tree. A group without triangles and with one or two shapes is cheaper
+    /// What an instance puts into the world's tree. A group without triangles and strands and with one or two shapes is cheaper
     /// without a tree of its own, and its spheres may be spheres in the world too.
     fn instance_entries(&self, index: u32, groups: &[Tree]) -> Vec<Entry> {
         let Instance { group, placement } = &self.instances[index as usize];
@@ -249,7 +276,8 @@ impl GeometryBuilder {
         if tree.bounds.is_empty() {
             return Vec::new();
         }
-        if objects.len() > 2 || !tree.packets.is_empty() {
+        let has_curves = |object: &u32| matches!(self.shapes[*object as usize], Shape::Curves(_));
+        if objects.len() > 2 || !tree.packets.is_empty() || objects.iter().any(has_curves) {
             return vec![Entry::Other(Primitive::Instance(index), placement.bounds(&tree.bounds))];
         }
         let place = |&object: &u32| {

@@ -17,6 +17,8 @@ pub struct Census {
     pub cylinders: usize,
     /// Bilinear patches that are not flat.
     pub patches: usize,
+    /// Segments of strands.
+    pub curves: usize,
     /// Placed groups.
     pub instances: usize,
     /// Memory of shapes and trees [bytes].
@@ -40,6 +42,10 @@ impl Geometry {
                 Shape::Disk(_) => census.disks += 1,
                 Shape::Cylinder(_) => census.cylinders += 1,
                 Shape::Patch(_) => census.patches += 1,
+                Shape::Curves(curves) => {
+                    census.curves += curves.len();
+                    census.bytes += curves.bytes();
+                }
             }
         }
         census

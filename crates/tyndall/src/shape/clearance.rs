@@ -3,7 +3,7 @@
 //! Particle-transport codes call it the safety: a flight that stays within it needs no ray. The bound is never above
 //! the true distance. It is the distance itself, less a few roundings, except for ellipsoids, oblique cylinders, and
 //! instances that are scaled unevenly, where lengths shrink at most by [`Placement::least_stretch`]; for patches, which
-//! stand inside the hull of their corners; and for parts of spheres, disks and cylinders, which count as the whole.
+//! stand inside the hull of their corners; for strands, which stand around their chords; and for parts of spheres, disks and cylinders, which count as the whole.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, dispatch, f32x8, mask32x8};
@@ -60,6 +60,10 @@ impl Geometry {
         match *primitive {
             Primitive::Sphere { centre, radius, .. } => to_sphere(centre, radius, p),
             Primitive::Shape { object, .. } => self.shapes[object as usize].clearance(p),
+            Primitive::Curve { object, ref piece } => match &self.shapes[object as usize] {
+                Shape::Curves(curves) => curves.clearance(piece, p),
+                _ => f64::INFINITY,
+            },
             Primitive::Instance(_) => f64::INFINITY, // groups hold no instances
         }
     }
@@ -77,7 +81,8 @@ impl Placement {
 impl Shape {
     fn clearance(&self, p: DVec3) -> f64 {
         match self {
-            Self::Mesh(_) => f64::INFINITY, // its triangles are in packets
+            // Their triangles and pieces are in the tree.
+            Self::Mesh(_) | Self::Curves(_) => f64::INFINITY,
             Self::Sphere(sphere) => sphere.clearance(p),
             Self::Disk(disk) => disk.clearance(p),
             Self::Cylinder(cylinder) => cylinder.clearance(p),
@@ -324,7 +329,7 @@ fn to_triangle_squared([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     }
 }
 
-fn to_segment_squared(a: DVec3, b: DVec3, p: DVec3) -> f64 {
+pub(super) fn to_segment_squared(a: DVec3, b: DVec3, p: DVec3) -> f64 {
     let (along, from) = (b - a, p - a);
     let length = along.length_squared();
     let t = if length > 0.0 { (along.dot(from) / length).clamp(0.0, 1.0) } else { 0.0 };

@@ -40,6 +40,10 @@ impl Geometry {
             Shape::Disk(disk) => disk.derivatives(p),
             Shape::Cylinder(cylinder) => cylinder.derivatives(p),
             Shape::Patch(patch) => patch.derivatives(at.uv),
+            Shape::Curves(curves) => {
+                let n = place.map_or(n, |map| map.matrix3.transpose() * n);
+                curves.derivatives(at.prim, n, at.uv.x)
+            }
         };
         let Local { dp, dn } = place.map_or(local, |map| local.placed(&map, n));
         let reversed = match shape {
@@ -48,6 +52,7 @@ impl Geometry {
             Shape::Disk(disk) => disk.reversed,
             Shape::Cylinder(cylinder) => cylinder.reversed,
             Shape::Patch(patch) => patch.reversed,
+            Shape::Curves(_) => false,
         };
         let dn = if reversed { dn.map(|d| -d) } else { dn };
         let is_smooth_mesh = matches!(shape, Shape::Mesh(mesh) if !mesh.normals.is_empty());

@@ -3,11 +3,12 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::{
-    Cylinder, Disk, Interaction, Mesh, Patch, Sphere,
+    Curves, Cylinder, Disk, Interaction, Mesh, Patch, Sphere,
     bvh::{
         NONE, Primitive, Tree,
         traverse::{Nearest, traverse},
     },
+    curve::Piece,
     instance::Instance,
     interaction::Point,
     sphere,
@@ -25,9 +26,10 @@ pub struct Hit {
     pub t: f32,
     /// The object.
     pub object: ObjectId,
-    /// The part of the object: triangle index, or 0.
+    /// The part of the object: index of the triangle or of the segment, or 0.
     pub prim: u32,
-    /// For triangles the weights of the second and third vertex, for patches `(u, v)`, else 0.
+    /// For triangles the weights of the second and third vertex, for patches `(u, v)`, for curves how far along the segment,
+    /// else 0.
     pub uv: Vec2,
     /// The instance, or [`Hit::NO_INSTANCE`].
     pub instance: u32,
@@ -51,6 +53,8 @@ pub enum Shape {
     Cylinder(Cylinder),
     /// A bilinear patch that is not flat.
     Patch(Patch),
+    /// Strands.
+    Curves(Curves),
 }
 
 impl Shape {
@@ -61,13 +65,14 @@ impl Shape {
             Self::Disk(disk) => disk.bounds(),
             Self::Cylinder(cylinder) => cylinder.bounds(),
             Self::Patch(patch) => patch.bounds(),
+            Self::Curves(curves) => curves.bounds(),
         }
     }
 
-    /// The nearest hit before `t_max` on a shape that is not a mesh.
+    /// The nearest hit before `t_max` on a shape that is in the tree as one.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
         match self {
-            Self::Mesh(_) => None,
+            Self::Mesh(_) | Self::Curves(_) => None,
             Self::Sphere(sphere) => sphere.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
             Self::Disk(disk) => disk.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
             Self::Cylinder(cylinder) => cylinder.intersect(ray, t_max).map(|t| (t, Vec2::ZERO)),
@@ -87,6 +92,7 @@ impl Shape {
             Self::Disk(disk) => disk.point(ray, t),
             Self::Cylinder(cylinder) => cylinder.point(ray, t),
             Self::Patch(patch) => patch.point(uv),
+            Self::Curves(curves) => curves.point(ray, prim, uv),
         }
     }
 }
@@ -176,6 +182,7 @@ impl Geometry {
                 }
             }
             Primitive::Shape { object, instance } => self.test_shape(object, instance, ray, nearest),
+            Primitive::Curve { object, ref piece } => self.test_curve(object, piece, ray, nearest),
             Primitive::Instance(_) => {} // groups hold no instances
         }
     }
@@ -185,6 +192,14 @@ impl Geometry {
         let ray = if instance == NONE { *ray } else { self.instances[instance as usize].placement.ray_to_local(ray) };
         if let Some((t, uv)) = self.shapes[object as usize].intersect(&ray, nearest.t) {
             *nearest = Nearest { t, object, prim: 0, instance, uv };
+        }
+    }
+
+    #[inline(never)]
+    fn test_curve(&self, object: u32, piece: &Piece, ray: &Ray, nearest: &mut Nearest) {
+        let Shape::Curves(curves) = &self.shapes[object as usize] else { return };
+        if let Some((t, uv)) = curves.intersect(piece, ray, nearest.t) {
+            *nearest = Nearest { t, object, prim: piece.segment, instance: NONE, uv };
         }
     }
 

@@ -15,6 +15,7 @@ mod builder;
 mod bvh;
 mod census;
 mod clearance;
+mod curve;
 mod cylinder;
 mod derivatives;
 mod disk;
@@ -29,6 +30,7 @@ mod sphere;
 
 pub use builder::{GeometryBuilder, GroupId, ShapeError};
 pub use census::Census;
+pub use curve::{Basis, Curves, Knot, Style};
 pub use cylinder::Cylinder;
 pub use derivatives::Derivatives;
 pub use disk::{Disk, DiskMapping};

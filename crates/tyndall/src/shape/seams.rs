@@ -39,7 +39,7 @@ impl Geometry {
     pub fn is_closed(&self, objects: &[ObjectId]) -> bool {
         let sums = objects.iter().map(|&object| match self.shape(object) {
             Shape::Sphere(sphere) => sphere.part.is_whole().then_some(0),
-            Shape::Disk(_) | Shape::Cylinder(_) => None,
+            Shape::Disk(_) | Shape::Cylinder(_) | Shape::Curves(_) => None,
             Shape::Mesh(mesh) => {
                 let faces = (0..mesh.indices.len() as u32).into_par_iter();
                 let faces = faces.map(|prim| sum(face_edges(mesh.triangle(prim), mesh.reversed)));
@@ -55,7 +55,7 @@ impl Geometry {
     pub fn faces_inward(&self, object: ObjectId) -> bool {
         match self.shape(object) {
             Shape::Sphere(sphere) => sphere.reversed,
-            Shape::Disk(_) | Shape::Cylinder(_) | Shape::Patch(_) => false,
+            Shape::Disk(_) | Shape::Cylinder(_) | Shape::Patch(_) | Shape::Curves(_) => false,
             Shape::Mesh(mesh) => {
                 let about = mesh.positions.first().map_or(DVec3::ZERO, |p| p.as_dvec3());
                 let volume = (0..mesh.indices.len() as u32).map(|prim| {
@@ -75,6 +75,7 @@ impl Geometry {
                 Shape::Sphere(sphere) => rims += usize::from(!sphere.part.is_whole()),
                 Shape::Disk(_) => rims += 1,
                 Shape::Cylinder(_) => rims += 2,
+                Shape::Curves(curves) => rims += 2 * curves.len(),
                 Shape::Mesh(mesh) => mesh_edges(mesh).for_each(&mut visit),
                 Shape::Patch(patch) => patch_edges(patch).for_each(&mut visit),
             }

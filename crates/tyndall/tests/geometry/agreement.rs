@@ -2,12 +2,13 @@
 
 use parry3d::query::RayCast;
 use tyndall::math::{Ray, Transform, Vec2, Vec3};
-use tyndall::shape::{Cylinder, Disk, Geometry, GeometryBuilder, Mesh, Patch, Sphere, SpherePart, Turn};
+use tyndall::shape::{Cylinder, Disk, Geometry, GeometryBuilder, Mesh, Patch, Sphere, SpherePart, Style, Turn};
 
 use super::{
     affine,
     meshes::{Random, displaced_sphere},
     of_mesh,
+    strands::strand,
 };
 
 fn parry(v: Vec3) -> parry3d::math::Vector {
@@ -78,11 +79,15 @@ pub(super) fn everything(random: &mut Random) -> Geometry {
         let part = SpherePart::new(0.2, [-0.05, 0.1], half);
         builder.add_sphere(Sphere::new(random.in_ball(), 0.2).cut(part), &transform, false).unwrap();
         builder.add_patch(Patch::new([0; 4].map(|_| random.in_ball())), &transform, false).unwrap();
+        for style in [Style::Flat, Style::Round] {
+            builder.add_curves(strand(style, 5, 0.05, random), &Transform::IDENTITY).unwrap();
+        }
     }
     let group = builder.begin_group();
     builder.add_mesh(displaced_sphere(6, 0.1), &Transform::IDENTITY, false).unwrap();
     builder.add_sphere(Sphere::new(Vec3::X, 0.5), &Transform::IDENTITY, false).unwrap();
     builder.add_disk(Disk::new(1.5, 0.5, 0.0), &Transform::IDENTITY, false).unwrap();
+    builder.add_curves(strand(Style::Round, 4, 0.1, random), &Transform::IDENTITY).unwrap();
     builder.add_cylinder(Cylinder::new(0.4, [-0.3, 0.8], Turn::FULL), &Transform::IDENTITY, false).unwrap();
     builder.end_group();
     let ball = builder.begin_group();

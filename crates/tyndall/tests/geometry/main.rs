@@ -7,6 +7,7 @@ mod meshes;
 mod round;
 mod scale;
 mod spawn;
+mod strands;
 
 use tyndall::math::{Transform, Vec3};
 use tyndall::shape::{Geometry, GeometryBuilder, Mesh, Sphere};

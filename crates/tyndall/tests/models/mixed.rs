@@ -73,7 +73,7 @@ fn rough_plastic(alpha: f32, distribution: Distribution, rho: Lanes, nonlinear: 
 
 /// Whether what a lobe draws is weighed by others too, so that single samples may weigh more than 1.
 pub(super) fn overlap(bsdf: &Bsdf) -> bool {
-    matches!(bsdf, Bsdf::RoughPlastic(_) | Bsdf::Principled(_) | Bsdf::PrincipledThin(_))
+    matches!(bsdf, Bsdf::RoughPlastic(_) | Bsdf::Principled(_) | Bsdf::PrincipledThin(_) | Bsdf::Hair(_))
 }
 
 /// White under a coat of little roughness, in a furnace: all comes back but what the definition of `R` takes of what passes
@@ -134,7 +134,9 @@ fn principled_at_normal_incidence_is_what_burley_writes() {
     assert!((found / expected - 1.0).abs() < 1e-5, "{found}, not {expected}");
 }
 
-/// Exchange holds but where a steep facet would send clear light through a thin sheet to a place before it.
+/// Exchange holds but where a steep facet would send clear light through a thin sheet to a place before it, and at one place
+/// of a fibre, which light leaves at another.
 pub(super) fn is_not_exchanged(bsdf: &Bsdf, a: Vec3, b: Vec3) -> bool {
-    matches!(bsdf, Bsdf::PrincipledThin(sheet) if sheet.burley.spec_trans > 0.0) && a.z * b.z < 0.0
+    matches!(bsdf, Bsdf::Hair(_))
+        || matches!(bsdf, Bsdf::PrincipledThin(sheet) if sheet.burley.spec_trans > 0.0) && a.z * b.z < 0.0
 }

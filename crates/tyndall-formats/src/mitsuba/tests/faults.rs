@@ -26,16 +26,16 @@ const FAULTS: &[(&str, &str)] = &[
     (r#"<shape kind="cube"/>"#, r#"2:8: <shape> has no attribute "kind" | known are "type", "id", "name", "version""#),
     (r"<shape/>", r#"2:2: <shape> lacks the attribute "type""#),
     (
-        r#"<shape type="cube"><bsdf type="hair"/></shape>"#,
-        r#"2:32: the bsdf "hair" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "roughplastic", "measured", "principled", "principledthin", "blendbsdf", "mask", "bumpmap", "normalmap""#,
+        r#"<shape type="cube"><bsdf type="pplastic"/></shape>"#,
+        r#"2:32: the bsdf "pplastic" is not known yet | known are "diffuse", "twosided", "dielectric", "roughdielectric", "thindielectric", "conductor", "roughconductor", "null", "plastic", "roughplastic", "measured", "principled", "principledthin", "blendbsdf", "mask", "bumpmap", "normalmap", "hair""#,
     ),
     (
         r#"<medium type="heterogeneous"><float name="x" value="1"/></medium>"#,
         r#"2:15: the medium "heterogeneous" is not known yet | known are "homogeneous""#,
     ),
     (
-        r#"<shape type="bsplinecurve"/>"#,
-        r#"2:14: the shape "bsplinecurve" is not known yet | known are "sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "serialized", "shapegroup", "instance""#,
+        r#"<shape type="sdfgrid"/>"#,
+        r#"2:14: the shape "sdfgrid" is not known yet | known are "sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply", "serialized", "bsplinecurve", "linearcurve", "shapegroup", "instance""#,
     ),
     (
         r#"<shape type="sphere"><float name="radios" value="1"/></shape>"#,
@@ -213,11 +213,11 @@ fn all_faults_of_a_file_are_told_at_once() {
     assert_eq!(places, ["2:35", "2:63", "3:14", "4:16"], "{found:#?}");
 }
 
-/// The peers' hair and noise: every word that is not known yet, each in its place.
+/// Every word that is not known yet, each in its place.
 #[test]
 fn what_is_not_known_yet_is_told_down_to_the_last_plugin() {
     let text = scene(
-        "<shape type=\"bsplinecurve\"><string name=\"filename\" value=\"hair.txt\"/><bsdf type=\"hair\"/></shape>\n\
+        "<shape type=\"sdfgrid\"><string name=\"filename\" value=\"hair.txt\"/><bsdf type=\"pplastic\"/></shape>\n\
          <shape type=\"cube\"><medium name=\"interior\" type=\"heterogeneous\">\n\
          <volume name=\"sigma_t\" type=\"gridvolume\"/><phase type=\"hg\"/></medium></shape>",
     );
@@ -225,8 +225,8 @@ fn what_is_not_known_yet_is_told_down_to_the_last_plugin() {
     assert_eq!(
         found,
         [
-            "2:14: the shape \"bsplinecurve\" is not known yet",
-            "2:82: the bsdf \"hair\" is not known yet",
+            "2:14: the shape \"sdfgrid\" is not known yet",
+            "2:77: the bsdf \"pplastic\" is not known yet",
             "3:50: the medium \"heterogeneous\" is not known yet",
             "4:30: the volume \"gridvolume\" is not known yet",
         ]

@@ -4,6 +4,7 @@ mod errors;
 mod fuzz;
 mod materials;
 mod scenes;
+mod strands;
 mod subsurface;
 mod textures;
 mod values;

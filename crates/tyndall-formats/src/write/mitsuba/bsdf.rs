@@ -7,8 +7,8 @@ use super::Pen;
 use super::element::Element;
 use crate::build::made::parts;
 use crate::desc::{
-    BurleyDesc, ConductorOptics, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind, PrincipledDesc,
-    PrincipledThinDesc, ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, Varying,
+    BurleyDesc, ConductorOptics, HairColourDesc, HairDesc, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind,
+    PrincipledDesc, PrincipledThinDesc, ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, Varying,
 };
 use crate::mitsuba::INDICES;
 use crate::write::number::{double, shortest};
@@ -30,6 +30,7 @@ pub(super) fn word(kind: &MaterialKind) -> &'static str {
         MaterialKind::PrincipledThin(_) => "principledthin",
         MaterialKind::Coated(_) => "coated",
         MaterialKind::Measured { .. } => "measured",
+        MaterialKind::Hair(_) => "hair",
         MaterialKind::Embossed { map: ReliefMap::Heights { .. }, .. } => "bumpmap",
         MaterialKind::Embossed { map: ReliefMap::Normals(_), .. } => "normalmap",
     }
@@ -144,6 +145,7 @@ impl Pen<'_, '_> {
                 self.lacks(span, "a base under a coat (pbrt's \"coateddiffuse\" and \"coatedconductor\")");
                 Element::plugin("bsdf", "diffuse")
             }
+            MaterialKind::Hair(hair) => self.hair(hair),
             MaterialKind::Measured { path } => {
                 let file = self.draft.relative(&path.value, path.span);
                 Element::plugin("bsdf", "measured").around(Element::parameter("string", "filename", &file))
@@ -170,6 +172,40 @@ impl Pen<'_, '_> {
                 }
                 element
             }
+        }
+    }
+
+    fn hair(&mut self, hair: &HairDesc) -> Element {
+        let HairDesc { colour, eta, beta_m, beta_n, alpha } = hair;
+        let mut element = Element::plugin("bsdf", "hair");
+        match &eta.value {
+            Varying::Everywhere(spectrum) => {
+                self.index(&mut element, &Spanned::new(spectrum.clone(), eta.span), "amber");
+            }
+            Varying::Texture(_) => self.lacks(eta.span, "an index of hair that is a texture"),
+        }
+        match colour {
+            HairColourDesc::SigmaA(sigma_a) => {
+                let sigma_a = self.varying("sigma_a", sigma_a);
+                element.extend(sigma_a);
+            }
+            HairColourDesc::Reflectance(colour) => self.lacks(colour.span, "hair by its colour"),
+            HairColourDesc::Pigments { eumelanin, pheomelanin } => {
+                self.plain_number(&mut element, "eumelanin", eumelanin, 1.3);
+                self.plain_number(&mut element, "pheomelanin", pheomelanin, 0.2);
+            }
+        }
+        self.plain_number(&mut element, "longitudinal_roughness", beta_m, 0.3);
+        self.plain_number(&mut element, "azimuthal_roughness", beta_n, 0.3);
+        self.plain_number(&mut element, "scale_tilt", alpha, 2.0);
+        element
+    }
+
+    /// A number that cannot be a texture.
+    fn plain_number(&mut self, element: &mut Element, name: &str, value: &Spanned<Varying>, default: f64) {
+        match value.value.number() {
+            Some(number) => element.float_unless(name, number, default),
+            None => self.lacks(value.span, "a parameter of hair that is a texture"),
         }
     }
 

@@ -1,16 +1,19 @@
 //! Shapes, groups and instances.
 
-use glam::{DMat4, DVec3};
+use std::fmt::Write;
+
+use glam::{DMat4, DVec3, DVec4};
 use tyndall::math::{Transform, Vec3};
-use tyndall::shape::{DiskMapping, Mesh, Patch, SpherePart, Turn};
+use tyndall::shape::{Basis, Curves, DiskMapping, Mesh, Patch, SpherePart, Style, Turn};
 
 use super::Pen;
 use super::element::Element;
 use super::emitter::point;
 use super::placed;
+use crate::build::strands::{strand, strands};
 use crate::build::triangles::triangles_of;
-use crate::desc::{FileRef, MediumInterface, PatchDesc, ShapeDesc, ShapeKind};
-use crate::write::mesh::has_normals;
+use crate::desc::{FileRef, MediumInterface, PatchDesc, Radii, ShapeDesc, ShapeKind, StrandsDesc};
+use crate::write::mesh::{has_normals, keeps_lengths};
 use crate::write::place::Place;
 
 impl Pen<'_, '_> {
@@ -198,6 +201,22 @@ impl Pen<'_, '_> {
                 }
                 element
             }
+            ShapeKind::Curve(curve) => self.strands(shape, strand(curve), Transform::new(shape.to_world)?)?,
+            ShapeKind::Strands(StrandsDesc { path, basis, style: Style::Round, radii })
+                if plugin_of(*basis).is_some() && is_text(path) && (*radii == Radii::World || keeps_lengths(shape)) =>
+            {
+                let mut element = Element::plugin("shape", plugin_of(*basis)?);
+                element.string("filename", &self.draft.relative(&path.value, path.span));
+                element.extend(placed(shape.to_world));
+                element
+            }
+            ShapeKind::Strands(file) => match strands(file, &Transform::new(shape.to_world)?) {
+                Ok((curves, transform)) => self.strands(shape, curves, transform)?,
+                Err(error) => {
+                    self.draft.errors.push(error);
+                    return None;
+                }
+            },
             ShapeKind::Serialized { path, index, face_normals } => {
                 let mut element = self.file("serialized", path, shape, *face_normals);
                 if *index != 0 {
@@ -208,10 +227,56 @@ impl Pen<'_, '_> {
         })
     }
 
+    /// Segments as B-splines of four points each, in the world.
+    fn strands(&mut self, shape: &ShapeDesc, curves: Curves, transform: Transform) -> Option<Element> {
+        self.lacks(shape.span, "strands but as B-splines in a file: each segment becomes a tube of its own");
+        let Some(curves) = curves.placed(&transform) else {
+            self.lacks(shape.span, "curves that are stretched unevenly");
+            return None;
+        };
+        let splines: Vec<_> = curves.beziers().map(spline).collect();
+        if splines.iter().flatten().any(|p| p.w < 0.0) {
+            self.lacks(shape.span, "a strand that tapers to a point");
+            return None;
+        }
+        let mut lines = String::new();
+        for spline in splines {
+            for [x, y, z, radius] in spline.map(|p| p.as_vec4().to_array()) {
+                // Writing to memory cannot fail.
+                let _ = writeln!(lines, "{x} {y} {z} {radius}");
+            }
+            lines.push('\n');
+        }
+        let name = self.draft.file_beside(shape, "txt", lines.into_bytes());
+        let mut element = Element::plugin("shape", "bsplinecurve");
+        element.string("filename", &name);
+        Some(element)
+    }
+
     fn file(&mut self, word: &str, path: &FileRef, shape: &ShapeDesc, flat: bool) -> Element {
         let name = self.draft.relative(&path.value, path.span);
         mesh_file(word, &name, shape, flat)
     }
+}
+
+/// Whether a file of strands is Mitsuba's text.
+fn is_text(path: &FileRef) -> bool {
+    path.value.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("hair"))
+}
+
+/// Mitsuba's word for strands of this basis.
+fn plugin_of(basis: Basis) -> Option<&'static str> {
+    match basis {
+        Basis::CubicBSpline => Some("bsplinecurve"),
+        Basis::Linear => Some("linearcurve"),
+        _ => None,
+    }
+}
+
+/// The control points of a uniform B-spline of one segment that is this Bézier curve.
+fn spline([a, b, c, d]: [DVec4; 4]) -> [DVec4; 4] {
+    let (p1, p2) = (2.0 * b - c, 2.0 * c - b);
+    [6.0 * a - 4.0 * p1 - p2, p1, p2, 6.0 * d - p1 - 4.0 * p2]
 }
 
 /// Mitsuba's word for triangles that are one of its own shapes.

@@ -5,8 +5,9 @@ use tyndall::relief::Rule;
 use super::Pen;
 use super::entity::{Entity, quoted};
 use crate::desc::{
-    BaseDesc, CoatedDesc, ConductorOptics, MappingDesc, MaterialDesc, MaterialId, MaterialKind, MicrofacetKind,
-    ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, TextureKind, Varying, WrapKind,
+    BaseDesc, CoatedDesc, ConductorOptics, HairColourDesc, HairDesc, MappingDesc, MaterialDesc, MaterialId,
+    MaterialKind, MicrofacetKind, ReliefMap, RoughnessDesc, ShadowingKind, Span, Spanned, SpectrumDesc, TextureKind,
+    Varying, WrapKind,
 };
 
 /// pbrt's word for a material, or the nearest: materials without a name are called by it.
@@ -29,6 +30,7 @@ pub(super) fn word(kind: &MaterialKind) -> &'static str {
             BaseDesc::Conductor { .. } => "coatedconductor",
         },
         MaterialKind::Measured { .. } => "measured",
+        MaterialKind::Hair(_) => "hair",
         MaterialKind::Embossed { .. } => "embossed",
     }
 }
@@ -85,6 +87,7 @@ impl Pen<'_, '_> {
             MaterialKind::Principled(_) => return self.stand_in(name, span, "the material \"principled\""),
             MaterialKind::PrincipledThin(_) => return self.stand_in(name, span, "the material \"principledthin\""),
             MaterialKind::Coated(coated) => self.coated(&mut entity, coated),
+            MaterialKind::Hair(hair) => self.hair(&mut entity, hair),
             MaterialKind::Measured { path } => {
                 self.both_sides(material);
                 entity.string("filename", &self.draft.relative(&path.value, path.span));
@@ -135,6 +138,22 @@ impl Pen<'_, '_> {
             }
             _ => self.lacks(texture.span, "normals that are no picture as it is"),
         }
+    }
+
+    fn hair(&mut self, entity: &mut Entity, hair: &HairDesc) {
+        let HairDesc { colour, eta, beta_m, beta_n, alpha } = hair;
+        match colour {
+            HairColourDesc::SigmaA(sigma_a) => self.colour(entity, "sigma_a", sigma_a, f64::NAN),
+            HairColourDesc::Reflectance(colour) => self.colour(entity, "reflectance", colour, f64::NAN),
+            HairColourDesc::Pigments { eumelanin, pheomelanin } => {
+                self.number(entity, "eumelanin", eumelanin, f64::NAN);
+                self.number(entity, "pheomelanin", pheomelanin, 0.0);
+            }
+        }
+        self.number(entity, "eta", eta, 1.55);
+        self.number(entity, "beta_m", beta_m, 0.3);
+        self.number(entity, "beta_n", beta_n, 0.3);
+        self.number(entity, "alpha", alpha, 2.0);
     }
 
     fn coated(&mut self, entity: &mut Entity, coated: &CoatedDesc) {

@@ -1,13 +1,14 @@
 //! Shapes, objects and their instances.
 
 use glam::DMat4;
-use tyndall::shape::{DiskMapping, Turn};
+use tyndall::shape::{Basis, DiskMapping, Style, Turn};
 
 use super::Pen;
 use super::entity::{Entity, quoted};
 use crate::build::triangles::triangles_of;
-use crate::desc::{MaterialKind, PatchDesc, ShapeDesc, ShapeKind};
-use crate::write::mesh::{has_normals, has_normals_against_winding};
+use crate::desc::{CurveDesc, MaterialKind, PatchDesc, Radii, ShapeDesc, ShapeKind, StrandsDesc};
+use crate::pbrt::strands::{BASES, STYLES};
+use crate::write::mesh::{has_normals, has_normals_against_winding, keeps_lengths};
 use crate::write::names::{Names, printable};
 use crate::write::number::shortest;
 
@@ -141,6 +142,8 @@ impl Pen<'_, '_> {
                 }
                 entity
             }
+            ShapeKind::Curve(curve) => strand(curve),
+            ShapeKind::Strands(strands) => self.strands(strands, shape),
             ShapeKind::Obj { .. } | ShapeKind::Serialized { .. } => {
                 let name = self.draft.mesh(shape)?;
                 let mut entity = Entity::new("Shape", &["plymesh"]);
@@ -148,6 +151,46 @@ impl Pen<'_, '_> {
                 entity
             }
         })
+    }
+}
+
+impl Pen<'_, '_> {
+    fn strands(&mut self, strands: &StrandsDesc, shape: &ShapeDesc) -> Entity {
+        let StrandsDesc { path, basis, style, radii } = strands;
+        self.draft.differs(path.span, "files of strands are read by tyndall only: pbrt has no word for them");
+        if *radii == Radii::World && !keeps_lengths(shape) {
+            self.lacks(path.span, "radii that stay as they are where their strands are scaled");
+        }
+        let mut entity = Entity::new("Shape", &["hair"]);
+        entity.string("filename", &self.draft.relative(&path.value, path.span));
+        entity.string("type", style_word(*style));
+        based(&mut entity, *basis);
+        entity
+    }
+}
+
+fn strand(curve: &CurveDesc) -> Entity {
+    let CurveDesc { basis, style, points, normals, widths: [root, tip] } = curve;
+    let mut entity = Entity::new("Shape", &["curve"]);
+    entity.string("type", style_word(*style));
+    based(&mut entity, *basis);
+    entity.float("width0", *root);
+    entity.float("width1", *tip);
+    entity.singles("point3", "P", points.as_flattened());
+    entity.singles("normal", "N", normals.as_flattened());
+    entity
+}
+
+fn style_word(style: Style) -> &'static str {
+    STYLES.into_iter().find(|(_, of)| *of == style).map_or("flat", |(word, _)| word)
+}
+
+fn based(entity: &mut Entity, basis: Basis) {
+    if let Some((word, degree, _)) = BASES.into_iter().find(|(.., of)| *of == basis) {
+        entity.string("basis", word);
+        if degree == 2 {
+            entity.integer("degree", degree.into());
+        }
     }
 }
 

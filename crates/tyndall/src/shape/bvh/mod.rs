@@ -23,6 +23,7 @@ mod prefetch;
 pub(super) mod traverse;
 pub(super) mod triangle;
 
+use super::curve::Piece;
 use crate::math::{Bounds, Vec3};
 
 /// No object, no instance.
@@ -143,6 +144,8 @@ pub(super) enum Primitive {
     Sphere { centre: Vec3, radius: f32, object: u32, instance: u32 },
     /// Any other shape, in the space of the tree or (if `instance` is not `NONE`) placed by an instance.
     Shape { object: u32, instance: u32 },
+    /// A piece of a strand, in the space of the tree.
+    Curve { object: u32, piece: Piece },
     /// A group with a tree of its own.
     Instance(u32),
 }

@@ -1,0 +1,186 @@
+//! A fibre of hair or fur, seen from near.
+//!
+//! `S(ω_o, ω_i) = Σ_p M_p(θ_o, θ_i) A_p(ω_o) N_p(φ)` [1/sr] is the value times the cosine (Chiang, Bitterli, Tappan and Burley
+//! 2016, "A Practical and Controllable Hair and Fur Model", after Marschner et al. 2003 and d'Eon et al. 2011): R, TT, TRT, and
+//! one lobe for all the rest, which is the same all round. `M` and `N` integrate to 1, and the `A` sum to 1 where nothing is
+//! absorbed, so a white fibre loses nothing. See [`lobes`] for the factors.
+//!
+//! | parameter | meaning | range |
+//! |---|---|---|
+//! | `h` | offset of the ray from the axis, over the radius | −1 to 1 |
+//! | `eta` | index of the fibre over that outside | > 1, hair 1.55 |
+//! | `sigma_a` | absorption per radius of the fibre | ≥ 0 |
+//! | `beta_m`, `beta_n` | roughness along the fibre and round it | 0 to 1, held above 0.01 |
+//! | `alpha` | tilt of the scales of the cuticle, towards the root | hair 2° |
+//!
+//! The local frame has the fibre along x. Only `h` says where on the fibre the light comes in: a ribbon that faces the ray and
+//! a tube are lit alike. The model is that of one place `h` and is not the same with the directions exchanged; its mean over
+//! `h` is, without tilt.
+
+mod bessel;
+pub mod lobes;
+
+use std::f64::consts::{FRAC_1_PI, PI};
+
+use super::{BsdfSample, ScatterKind};
+use crate::{
+    math::{Vec2, Vec3},
+    spectrum::Lanes,
+};
+use lobes::{Entry, azimuthal, exit_azimuth, longitudinal, sample_azimuthal, sample_longitudinal, shares};
+
+/// The lowest roughness: below it lobes are sharper than single precision can tell directions apart.
+const SMOOTHEST: f32 = 0.01;
+
+/// A fibre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hair {
+    /// Offset of the ray from the axis over the radius, −1 to 1 \[1\]: positive on the side of ω_o × x.
+    pub h: f32,
+    /// Index of the fibre over that outside \[1\], above 1.
+    pub eta: f32,
+    /// Absorption [1/radius].
+    pub sigma_a: Lanes,
+    /// Longitudinal variance of R \[1\]; TT has a quarter, the others four times as much.
+    variance: f32,
+    /// Scale of the logistic lobes [rad].
+    scale: f32,
+    /// Tilt of the scales [rad].
+    alpha: f32,
+}
+
+/// The part of [`Hair::lobes`] for one pair of directions.
+#[derive(Debug, Clone, Copy)]
+pub struct Lobes {
+    /// `M_p N_p` [1/sr]: the density with which lobe p is drawn.
+    pub density: [f64; 4],
+    /// `A_p`: what takes that lobe \[1\].
+    pub share: [Lanes; 4],
+}
+
+impl Lobes {
+    /// `S` of one lobe [1/sr]: 0 is R, 1 TT, 2 TRT, 3 the rest.
+    pub fn value(&self, p: usize) -> Lanes {
+        self.share[p] * self.density[p] as f32
+    }
+}
+
+impl Hair {
+    /// A fibre met at `h`, with roughness in [0, 1] and scales tilted by `alpha` [rad].
+    pub fn new(h: f32, eta: f32, sigma_a: Lanes, [beta_m, beta_n]: [f32; 2], alpha: f32) -> Self {
+        let [m, n] = [beta_m, beta_n].map(|b| f64::from(b.clamp(SMOOTHEST, 1.0)));
+        // Chiang et al. 2016, eq. 7 and 8: roughness that looks even.
+        let deviation = 0.726 * m + 0.812 * m * m + 3.7 * m.powi(20);
+        let scale = (PI / 8.0).sqrt() * (0.265 * n + 1.194 * n * n + 5.372 * n.powi(22));
+        let h = h.clamp(-1.0, 1.0);
+        Self { h, eta, sigma_a, variance: (deviation * deviation) as f32, scale: scale as f32, alpha }
+    }
+
+    /// The absorption [1/radius] that makes a bundle of fibres look of this colour, in [0, 1] (Chiang et al. 2016, eq. 9).
+    pub fn sigma_a_of_reflectance(reflectance: Lanes, beta_n: f32) -> Lanes {
+        let b = beta_n.clamp(SMOOTHEST, 1.0);
+        let fit = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
+        // Black would absorb without end.
+        reflectance.map(|r| (r.clamp(1e-4, 1.0).ln() / fit).powi(2))
+    }
+
+    fn variance(&self, p: usize) -> f64 {
+        f64::from(self.variance) * [1.0, 0.25, 4.0, 4.0][p]
+    }
+
+    /// The inclination that lobe p sees: scales tilt R by −2α, TT by α, TRT by 4α.
+    fn tilted(&self, p: usize, [sin, cos]: [f64; 2]) -> [f64; 2] {
+        let (s, c) = (f64::from(self.alpha) * [-2.0, 1.0, 4.0, 0.0][p]).sin_cos();
+        // Beyond the axis it is the other side, from where light goes just as far round.
+        [sin * c + cos * s, (cos * c - sin * s).abs()]
+    }
+
+    fn entry(&self, theta_o: [f64; 2]) -> Entry {
+        Entry::new(f64::from(self.eta), f64::from(self.h), theta_o)
+    }
+
+    /// The lobes, each by itself.
+    pub fn lobes(&self, wo: Vec3, wi: Vec3) -> Lobes {
+        let theta_o = inclination(wo);
+        let entry = self.entry(theta_o);
+        Lobes { density: self.densities(&entry, wo, wi), share: shares(&entry, self.sigma_a) }
+    }
+
+    fn densities(&self, entry: &Entry, wo: Vec3, wi: Vec3) -> [f64; 4] {
+        let (theta_o, theta_i) = (inclination(wo), inclination(wi));
+        let phi = azimuth(wi) - azimuth(wo);
+        let [gamma_o, gamma_t] = entry.gamma;
+        std::array::from_fn(|p| {
+            let round = match p {
+                3 => 0.5 * FRAC_1_PI,
+                _ => azimuthal(f64::from(self.scale), phi, exit_azimuth(p, gamma_o, gamma_t)),
+            };
+            longitudinal(self.variance(p), theta_i, self.tilted(p, theta_o)) * round
+        })
+    }
+
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Lanes {
+        let lobes = self.lobes(wo, wi);
+        lobes.value(0) + lobes.value(1) + lobes.value(2) + lobes.value(3)
+    }
+
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let Lobes { density, share } = self.lobes(wo, wi);
+        let odds = odds(&share);
+        (0..4).map(|p| odds[p] * density[p]).sum::<f64>() as f32
+    }
+
+    pub(super) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let theta_o = inclination(wo);
+        let entry = self.entry(theta_o);
+        let share = shares(&entry, self.sigma_a);
+        let odds = odds(&share);
+        let (mut p, mut rest) = (0, f64::from(u_lobe));
+        while p < 3 && rest >= odds[p] {
+            rest -= odds[p];
+            p += 1;
+        }
+        // What is left of the number is as random as before.
+        let again = if odds[p] > 0.0 { (rest / odds[p]).clamp(0.0, 1.0 - f64::EPSILON) } else { 0.0 };
+
+        let tilted = self.tilted(p, theta_o);
+        let sin_i = sample_longitudinal(self.variance(p), tilted, 1.0 - f64::from(u.x), f64::from(u.y));
+        let cos_i = (1.0 - sin_i * sin_i).max(0.0).sqrt();
+        let round = if p == 3 {
+            2.0 * PI * again
+        } else {
+            let [gamma_o, gamma_t] = entry.gamma;
+            sample_azimuthal(f64::from(self.scale), exit_azimuth(p, gamma_o, gamma_t), again)
+        };
+        let (sin_phi, cos_phi) = (azimuth(wo) + round).sin_cos();
+        let wi = glam::DVec3::new(sin_i, cos_i * cos_phi, cos_i * sin_phi).normalize().as_vec3();
+
+        let density = self.densities(&entry, wo, wi);
+        let pdf = (0..4).map(|p| odds[p] * density[p]).sum::<f64>();
+        let value = (0..4).map(|p| share[p] * (density[p] as f32)).fold(Lanes::ZERO, |sum, lobe| sum + lobe);
+        let pdf = pdf as f32;
+        if !(pdf > 0.0 && pdf.is_finite()) {
+            return None;
+        }
+        let kind = if wo.z * wi.z > 0.0 { ScatterKind::Reflection } else { ScatterKind::Transmission };
+        Some(BsdfSample { wi, weight: value / pdf, pdf, kind, specular: false, eta: 1.0 })
+    }
+}
+
+/// `[sin θ, cos θ]`, each to its own precision.
+fn inclination(w: Vec3) -> [f64; 2] {
+    let w = w.as_dvec3().normalize_or_zero();
+    [w.x, w.y.hypot(w.z)]
+}
+
+/// φ [rad].
+fn azimuth(w: Vec3) -> f64 {
+    f64::from(w.z).atan2(f64::from(w.y))
+}
+
+/// How often each lobe is drawn \[1\]: by the mean of its lanes.
+fn odds(share: &[Lanes; 4]) -> [f64; 4] {
+    let mean = share.map(|lanes| f64::from(lanes.mean()));
+    let sum: f64 = mean.iter().sum();
+    mean.map(|m| m / sum)
+}
