@@ -221,19 +221,18 @@ fn every_scene_with_a_line_less_is_written_and_read_again() {
 fn a_body_with_normals_against_its_winding_is_not_turned_inside_out() {
     let dir = scratch("winding");
     let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
-    let mut ply = String::from("ply\nformat ascii 1.0\nelement vertex 6\n");
-    for name in ["x", "y", "z", "nx", "ny", "nz"] {
-        ply += &format!("property float {name}\n");
-    }
-    ply += "element face 8\nproperty list uchar int vertex_indices\nend_header\n";
-    for [x, y, z] in corners {
-        ply += &format!("{x} {y} {z} {} {} {}\n", -x, -y, -z);
-    }
-    for octant in 0..8 {
-        let (x, y, z) = (octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2));
+    let properties = ["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
+    let vertices = corners.map(|[x, y, z]| format!("{x} {y} {z} {} {} {}\n", -x, -y, -z)).concat();
+    let face = |octant: usize| {
+        let [x, y, z] = [octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2)];
         let is_even = [0, 3, 5, 6].contains(&octant);
-        ply += &(if is_even { format!("3 {x} {y} {z}\n") } else { format!("3 {x} {z} {y}\n") });
-    }
+        if is_even { format!("3 {x} {y} {z}\n") } else { format!("3 {x} {z} {y}\n") }
+    };
+    let faces: String = (0..8).map(face).collect();
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 6\n{properties}element face 8\nproperty list uchar int vertex_indices\n\
+         end_header\n{vertices}{faces}"
+    );
     std::fs::write(dir.join("body.ply"), ply).unwrap();
     let xml = r#"<scene version="3.0.0"><integrator type="volpath"/>
         <sensor type="perspective"><transform name="to_world"><lookat origin="1,2,5" target="0,0,0" up="0,1,0"/></transform>

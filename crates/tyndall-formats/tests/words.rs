@@ -193,7 +193,7 @@ impl Language {
         }
         read.dedup();
         let mark = if kind.is_ours { OURS } else { "" };
-        let own: String = own.iter().map(|reason| format!("{reason}. ")).collect();
+        let own: String = own.iter().flat_map(|reason| [reason, ". "]).collect();
         format!("| `{name}`{mark} | {} | {own}{} |\n", read.join(" "), other.join("; "))
     }
 
