@@ -8,9 +8,9 @@ use anyhow::{Result, bail, ensure};
 use crate::shell::cargo;
 
 /// Units that are one word; rustdoc leaves `[1/length]` or `[W·m⁻²]` alone.
-const UNITS: [&str; 25] = [
-    "1", "GiB", "K", "bits", "bytes", "cm", "dB", "degrees", "length", "length²", "length³", "lm", "m", "mm", "ms",
-    "nm", "ns", "pixels", "rad", "s", "sr", "stops", "°", "µm", "µm²",
+const UNITS: [&str; 27] = [
+    "1", "GiB", "K", "MPa", "bits", "bytes", "cm", "dB", "degrees", "length", "length²", "length³", "lm", "m", "m²",
+    "mm", "ms", "nm", "ns", "pixels", "rad", "s", "sr", "stops", "°", "µm", "µm²",
 ];
 
 /// Builds the documentation of the workspace and reads rustdoc's complaints.
