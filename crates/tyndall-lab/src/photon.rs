@@ -225,7 +225,7 @@ impl Photon {
     /// Comes back from a walk: all collisions that are no event any more are told as one.
     fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, detector: &mut impl Detector, tally: &mut Tally) {
         let (weight, order) = (self.weight(), self.order());
-        self.path.end_walk(walker, end, phase, tally);
+        self.path.end_walk(walker, end, phase, &Lanes::ZERO, tally);
         self.travelled += f64::from(walker.length);
         let is_event = end != End::Leaves;
         let told = walker.collisions - u32::from(is_event);

@@ -14,6 +14,7 @@ pub mod film;
 pub mod integrator;
 pub mod lecture;
 pub mod light;
+pub mod lpe;
 pub mod material;
 pub mod math;
 pub mod medium;

@@ -10,8 +10,9 @@ use rayon::prelude::*;
 use crate::{
     camera::CameraRay,
     feature::FirstHit,
-    film::{Cell, Crop, Film, Pixel, Recorded},
-    integrator::{CameraSample, Integrator},
+    film::{Cell, Crop, Film, LayerKind, Pixel, Recorded, parts::Share},
+    integrator::{CameraSample, Integrator, Parts, TakesApart},
+    lpe::Automaton,
     sampling::{Sampler, SamplerKind},
     scene::Scene,
     spectrum::{Lanes, Wavelengths, film_rgb},
@@ -87,13 +88,15 @@ struct Tile {
     tally: Tally,
 }
 
-/// Renders a scene on the current rayon thread pool.
+/// Renders a scene on the current rayon thread pool. Layers that the integrator cannot tell are not on the film.
 pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, observer: &dyn Observer) -> Rendering {
     let camera = &scene.camera;
+    let work = Work { scene, integrator, settings, apart: scene.paths.as_ref().zip(integrator.apart()) };
+    let layers: Vec<_> = camera.layers.iter().filter(|layer| work.can_record(layer)).cloned().collect();
     let mut film =
         Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)))
-            .with_layers(&camera.layers);
-    let mut tiles = tiles_of(film.crop, camera.layers.len());
+            .with_layers(&layers);
+    let mut tiles = tiles_of(film.crop, layers.len());
     let total = film.pixels.len() as u64 * u64::from(settings.spp);
     let samples = AtomicU64::new(0);
     let stopped = AtomicBool::new(false);
@@ -106,7 +109,7 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
             }
             let first = settings.first_sample.saturating_add(pass.start);
             let last = settings.first_sample.saturating_add(pass.end);
-            render_tile(scene, integrator, settings, first..last, tile);
+            work.render_tile(&layers, first..last, tile);
             let taken = tile.pixels.len() as u64 * u64::from(pass.end - pass.start);
             let samples = samples.fetch_add(taken, Relaxed) + taken;
             observer.tile_done(Progress { samples, total });
@@ -171,37 +174,53 @@ fn copy_tiles(tiles: &[Tile], film: &mut Film) {
     }
 }
 
-fn render_tile(
-    scene: &Scene,
-    integrator: &dyn Integrator,
-    settings: &Settings,
-    samples: std::ops::Range<u32>,
-    tile: &mut Tile,
-) {
-    let seen: Vec<_> = tile
-        .area
-        .pixels()
-        .flat_map(|pixel| samples.clone().map(move |index| Seen::new(scene, settings, pixel, index)))
-        .collect();
-    tile.tally.paths += seen.len() as u64;
-    let passed: Vec<_> = seen.iter().filter(|seen| seen.weight != 0.0).map(|seen| seen.sample).collect();
-    let mut radiances = integrator.li_many(scene, &passed, &mut tile.tally).into_iter();
+/// What is to be rendered, and how.
+struct Work<'a> {
+    scene: &'a Scene,
+    integrator: &'a dyn Integrator,
+    settings: &'a Settings,
+    /// How light is taken apart, if it is.
+    apart: Option<(&'a Automaton, &'a dyn TakesApart)>,
+}
 
-    let (layers, per_pixel) = (scene.camera.layers.len(), samples.len());
-    for (i, seen) in seen.iter().enumerate() {
-        let pixel = &mut tile.pixels[i / per_pixel];
-        let Some(radiance) = (seen.weight != 0.0).then(|| radiances.next()).flatten() else {
-            pixel.add([0.0; 3]);
-            continue;
+impl Work<'_> {
+    fn can_record(&self, layer: &LayerKind) -> bool {
+        self.apart.is_some() || !matches!(layer.recorded, Recorded::Paths(_))
+    }
+
+    fn render_tile(&self, layers: &[LayerKind], samples: std::ops::Range<u32>, tile: &mut Tile) {
+        let seen: Vec<_> = tile
+            .area
+            .pixels()
+            .flat_map(|pixel| samples.clone().map(move |index| Seen::new(self.scene, self.settings, pixel, index)))
+            .collect();
+        tile.tally.paths += seen.len() as u64;
+        let passed: Vec<_> = seen.iter().filter(|seen| seen.weight != 0.0).map(|seen| seen.sample).collect();
+        let parts = match self.apart {
+            Some((by, integrator)) => integrator.li_apart(self.scene, by, &passed, &mut tile.tally),
+            None => Parts::undivided(self.integrator.li_many(self.scene, &passed, &mut tile.tally)),
         };
-        seen.fill(scene, radiance, &mut tile.cells[i / per_pixel * layers..][..layers]);
-        let value = seen.value(scene, radiance);
-        if radiance.is_finite() && radiance.min_lane() >= 0.0 {
-            pixel.add(value);
-        } else {
-            // Counted and located, and left out of the sums, which one such sample would spoil for good.
-            tile.tally.bad_sample(seen.pixel, seen.index, value);
-            pixel.add([0.0; 3]);
+
+        let (per_pixel, mut rays) = (samples.len(), 0..passed.len());
+        for (i, seen) in seen.iter().enumerate() {
+            let pixel = &mut tile.pixels[i / per_pixel];
+            let Some(ray) = (seen.weight != 0.0).then(|| rays.next()).flatten() else {
+                pixel.add([0.0; 3]);
+                continue;
+            };
+            let radiance = parts.radiance[ray];
+            let (value, cells) = (seen.value(self.scene, radiance), &mut tile.cells[i / per_pixel * layers.len()..]);
+            seen.fill(self.scene, layers, radiance, cells);
+            if radiance.is_finite() && radiance.min_lane() >= 0.0 {
+                pixel.add(value);
+                if self.apart.is_some() {
+                    seen.fill_parts(self.scene, layers, value, parts.of(ray), cells);
+                }
+            } else {
+                // Counted and located, and left out of the sums, which one such sample would spoil for good.
+                tile.tally.bad_sample(seen.pixel, seen.index, value);
+                pixel.add([0.0; 3]);
+            }
         }
     }
 }
@@ -227,16 +246,21 @@ impl Seen {
 
     /// Linear sRGB (which may be negative for a single wavelength, and where the filter is).
     fn value(&self, scene: &Scene, radiance: Lanes) -> [f32; 3] {
-        let factor = scene.camera.exposure * self.weight;
+        let factor = self.factor(scene);
         film_rgb(radiance, &self.sample.wavelengths).map(|v| v * factor)
     }
 
-    /// Adds the sample to the layers of its pixel.
-    fn fill(&self, scene: &Scene, radiance: Lanes, cells: &mut [Cell]) {
+    fn factor(&self, scene: &Scene) -> f32 {
+        scene.camera.exposure * self.weight
+    }
+
+    /// Adds the sample to the layers of its pixel that are no parts of the light.
+    fn fill(&self, scene: &Scene, layers: &[LayerKind], radiance: Lanes, cells: &mut [Cell]) {
         let (wavelengths, mut sampler) = (&self.sample.wavelengths, self.sample.sampler);
         let mut first = None;
-        for (cell, layer) in cells.iter_mut().zip(&scene.camera.layers) {
-            cell.add(match layer.recorded {
+        for (cell, layer) in cells.iter_mut().zip(layers) {
+            let value = match layer.recorded {
+                Recorded::Paths(_) => continue,
                 Recorded::Light(bands) => bands.sample(radiance, wavelengths).map(|v| v * self.weight),
                 Recorded::Surface(feature) => {
                     let first = first.get_or_insert_with(|| {
@@ -245,7 +269,31 @@ impl Seen {
                     });
                     first.sample(feature, wavelengths, &mut sampler)
                 }
-            });
+            };
+            cell.add(value.map(f64::from));
+        }
+    }
+
+    /// Adds the parts of its light to the layers of its pixel.
+    fn fill_parts(
+        &self,
+        scene: &Scene,
+        layers: &[LayerKind],
+        value: [f32; 3],
+        (total, parts): (&[f64; 4], &[[f64; 4]]),
+        cells: &mut [Cell],
+    ) {
+        if *total == [0.0; 4] {
+            return;
+        }
+        let share = Share::new(&self.sample.wavelengths, self.factor(scene), total, value);
+        for (cell, layer) in cells.iter_mut().zip(layers) {
+            if let Recorded::Paths(number) = layer.recorded
+                && parts[usize::from(number)] != [0.0; 4]
+            {
+                let [r, g, b] = share.color(&parts[usize::from(number)]);
+                cell.add([r, g, b, 0.0]);
+            }
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::{
     camera::Camera,
+    film::{Average, LayerKind, Recorded},
     light::{AreaLight, Light, LightId, LightTable},
+    lpe::{Automaton, Names, PathLayer, automaton::BuildError},
     material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
@@ -58,6 +60,8 @@ pub struct Scene {
     pub media: Vec<Homogeneous>,
     /// All lights.
     pub lights: LightTable,
+    /// How its light is taken apart, if layers ask for that: [`Self::take_apart`].
+    pub paths: Option<Automaton>,
     /// What follows from the above and is asked for often.
     facts: Facts,
 }
@@ -111,9 +115,23 @@ impl Scene {
             bodies,
             around_camera: Within::default(),
         };
-        let mut scene = Self { color, camera, geometry, objects, materials, media, lights, facts };
+        let mut scene = Self { color, camera, geometry, objects, materials, media, lights, paths: None, facts };
         scene.facts.around_camera = enclosure::around_camera(&scene);
         scene
+    }
+
+    /// Adds layers of light to what the camera's film records.
+    ///
+    /// # Errors
+    /// What is wrong with their expressions, in this scene with these names.
+    pub fn take_apart(&mut self, layers: &[PathLayer], names: &Names) -> Result<(), BuildError> {
+        self.paths = Some(Automaton::new(layers, names)?);
+        self.camera.layers.extend((0..).zip(layers).map(|(number, layer)| LayerKind {
+            recorded: Recorded::Paths(number),
+            channels: ["R", "G", "B"].map(|c| format!("{}.{c}", layer.name)).to_vec(),
+            average: Average::Samples,
+        }));
+        Ok(())
     }
 
     /// The object that was hit.

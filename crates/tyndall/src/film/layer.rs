@@ -24,6 +24,8 @@ pub enum Recorded {
     Surface(Feature),
     /// The light in bands of wavelengths.
     Light(Bands),
+    /// The part of the light that one of the scene's expressions selects, by its number: [`crate::lpe`].
+    Paths(u8),
 }
 
 /// Over what a layer is averaged.
@@ -60,9 +62,8 @@ pub struct Layer {
 impl Cell {
     /// Adds one sample.
     #[inline]
-    pub fn add(&mut self, value: [f32; 4]) {
+    pub fn add(&mut self, value: [f64; 4]) {
         for (lane, v) in value.into_iter().enumerate() {
-            let v = f64::from(v);
             self.sum[lane] += v;
             self.sum_of_squares[lane] += v * v;
         }

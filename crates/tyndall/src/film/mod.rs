@@ -7,6 +7,7 @@ pub mod bands;
 pub mod filter;
 pub mod layer;
 pub mod lobed;
+pub mod parts;
 
 pub use bands::Bands;
 pub use filter::Filter;

@@ -64,7 +64,7 @@ fn walk(scene: &Scene, mut ray: Ray, w: &Wavelengths, lane: usize, sampler: &mut
                     return if source > 0.0 { radiance + throughput * source / (sigma_t - sigma_s) } else { radiance };
                 }
                 throughput *= share; // 0 where nothing scatters, else 1
-                (Vertex::Medium { p, dir: ray.dir, phase: &scene.medium(id).phase }, within)
+                (Vertex::Medium { p, dir: ray.dir, medium: id, phase: &scene.medium(id).phase }, within)
             }
             None => {
                 let sky = scene

@@ -1,6 +1,7 @@
 //! Estimators of the radiance along a camera ray.
 
 pub mod analog;
+pub mod apart;
 pub mod pool;
 pub mod volpath;
 pub mod walk;
@@ -8,6 +9,7 @@ pub mod walk;
 use std::fmt::Debug;
 
 pub use analog::Analog;
+pub use apart::{Parts, TakesApart};
 pub use volpath::{Counted, Deep, VolPath};
 
 use crate::{
@@ -39,6 +41,11 @@ pub trait Integrator: Debug + Sync {
     /// Estimates for many camera rays, in their order: the same bits as [`Self::li`] gives for each.
     fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
         samples.iter().map(|seen| self.li(scene, seen, tally)).collect()
+    }
+
+    /// The same estimator as one that takes light apart, if it knows what its paths go through.
+    fn apart(&self) -> Option<&dyn TakesApart> {
+        None
     }
 }
 

@@ -2,15 +2,17 @@
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
 use super::{
-    CameraSample, Integrator,
+    CameraSample, Integrator, TakesApart,
+    apart::Parts,
     pool::{self, Crew},
     walk::{End, Walker},
 };
 use crate::{
     light::{Light, Reference},
+    lpe::Automaton,
     material::Material,
-    medium::{Inside, Skin, Within},
-    path::{Attempt, Event, History, Path, Vertex, shadow},
+    medium::{Inside, MediumId, Skin, Within},
+    path::{Attempt, Event, History, Path, Source, Turn, Vertex, shadow},
     phase::Phase,
     scene::Scene,
     shape::Interaction,
@@ -70,13 +72,17 @@ pub enum Status {
 
 /// Takes what a path finds.
 pub trait Sink {
-    /// Radiance that reaches the camera along a path with this history.
-    fn add(&mut self, radiance: Lanes, history: &History);
+    /// Radiance that reaches the camera along a path with this history, and then perhaps one turn more, from a source.
+    fn add(&mut self, radiance: Lanes, history: &History, last: Option<Turn>, source: Source);
+
+    /// The path has taken the same turn so many times.
+    #[inline]
+    fn turned(&self, _history: &mut History, _turn: &Turn, _times: u32) {}
 }
 
 impl Sink for Lanes {
     #[inline]
-    fn add(&mut self, radiance: Lanes, _history: &History) {
+    fn add(&mut self, radiance: Lanes, _history: &History, _last: Option<Turn>, _source: Source) {
         *self += radiance;
     }
 }
@@ -84,42 +90,69 @@ impl Sink for Lanes {
 impl Integrator for VolPath {
     fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
         let mut radiance = Lanes::ZERO;
-        let mut path = Path::new(scene, seen);
-        while path.step(scene, self, &mut radiance, tally) == Status::Alive {
-            if let Some(mut walker) = path.begin_walk(self) {
-                let phase = &scene.medium(walker.medium).phase;
-                let end = walker.alone(phase);
-                path.end_walk(&walker, end, phase, tally);
-            }
-        }
+        self.follow(scene, seen, &mut radiance, tally);
         radiance
     }
 
     fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
-        if self.deep == Deep::Together && !scene.media.is_empty() {
-            let mut estimates = Estimates { scene, settings: self, radiance: vec![Lanes::ZERO; samples.len()] };
-            let paths = samples.iter().map(|seen| Path::new(scene, seen)).enumerate();
-            pool::follow(scene, &mut estimates, paths, tally);
-            return estimates.radiance;
-        }
-        samples.iter().map(|seen| self.li(scene, seen, tally)).collect()
+        let mut radiance = vec![Lanes::ZERO; samples.len()];
+        self.follow_many(scene, samples, &mut radiance, tally);
+        radiance
+    }
+
+    fn apart(&self) -> Option<&dyn TakesApart> {
+        Some(self)
     }
 }
 
-/// Radiance along many camera rays, by paths that are under way together.
-struct Estimates<'a> {
-    scene: &'a Scene,
-    settings: &'a VolPath,
-    radiance: Vec<Lanes>,
+impl TakesApart for VolPath {
+    fn li_apart(&self, scene: &Scene, by: &Automaton, samples: &[CameraSample], tally: &mut Tally) -> Parts {
+        let mut parts = Parts::new(by.layers(), samples.len());
+        let mut sinks = parts.sinks(by);
+        self.follow_many(scene, samples, &mut sinks, tally);
+        parts
+    }
 }
 
-impl Crew for Estimates<'_> {
+impl VolPath {
+    /// Follows a path to its end.
+    fn follow(&self, scene: &Scene, seen: &CameraSample, sink: &mut impl Sink, tally: &mut Tally) {
+        let mut path = Path::new(scene, seen);
+        while path.step(scene, self, sink, tally) == Status::Alive {
+            if let Some(mut walker) = path.begin_walk(self) {
+                let phase = &scene.medium(walker.medium).phase;
+                let end = walker.alone(phase);
+                path.end_walk(&walker, end, phase, sink, tally);
+            }
+        }
+    }
+
+    /// Follows many to theirs, each with a sink of its own.
+    fn follow_many<S: Sink>(&self, scene: &Scene, samples: &[CameraSample], sinks: &mut [S], tally: &mut Tally) {
+        if self.deep == Deep::Together && !scene.media.is_empty() {
+            let paths = samples.iter().map(|seen| Path::new(scene, seen)).enumerate();
+            return pool::follow(scene, &mut Estimates { scene, settings: self, sinks }, paths, tally);
+        }
+        for (seen, sink) in samples.iter().zip(sinks) {
+            self.follow(scene, seen, sink, tally);
+        }
+    }
+}
+
+/// What many camera rays find, by paths that are under way together.
+struct Estimates<'a, S> {
+    scene: &'a Scene,
+    settings: &'a VolPath,
+    sinks: &'a mut [S],
+}
+
+impl<S: Sink> Crew for Estimates<'_, S> {
     /// A path with the number of its camera ray.
     type Member = (usize, Path);
 
     fn advance(&mut self, (sample, path): &mut Self::Member, tally: &mut Tally) -> Option<Walker> {
-        let radiance = &mut self.radiance[*sample];
-        while path.step(self.scene, self.settings, radiance, tally) == Status::Alive {
+        let sink = &mut self.sinks[*sample];
+        while path.step(self.scene, self.settings, sink, tally) == Status::Alive {
             if let Some(walker) = path.begin_walk(self.settings) {
                 return Some(walker);
             }
@@ -127,8 +160,9 @@ impl Crew for Estimates<'_> {
         None
     }
 
-    fn end_walk(&mut self, (_, path): &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
-        path.end_walk(walker, end, phase, tally);
+    fn end_walk(&mut self, member: &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
+        let (sample, path) = member;
+        path.end_walk(walker, end, phase, &self.sinks[*sample], tally);
     }
 }
 
@@ -183,18 +217,18 @@ impl Path {
                 let vertex = Vertex::met(scene, hit, bsdf, self.ray.dir, relief);
                 self.scatter(scene, settings, &vertex, (disperses, Attempt::CERTAIN), sink, tally)
             }
-            Event::Scatter { p, phase, emitted } => {
-                self.find_emission(emitted, sink);
+            Event::Scatter { p, medium, phase, emitted } => {
+                self.find_emission(medium, emitted, sink);
                 let light = match settings.deep {
                     Deep::Traced => self.attempt(scene),
                     Deep::Alone | Deep::Together => self.look_around(scene, p),
                 };
                 self.history.order += 1;
-                let vertex = Vertex::Medium { p, dir: self.ray.dir, phase };
+                let vertex = Vertex::Medium { p, dir: self.ray.dir, medium, phase };
                 self.scatter(scene, settings, &vertex, (false, light), sink, tally)
             }
-            Event::Absorb { emitted, .. } => {
-                self.find_emission(emitted, sink);
+            Event::Absorb { medium, emitted, .. } => {
+                self.find_emission(medium, emitted, sink);
                 Status::Done
             }
         }
@@ -202,9 +236,9 @@ impl Path {
 
     /// Light from the medium, at a collision.
     #[inline]
-    fn find_emission(&self, emitted: Lanes, sink: &mut impl Sink) {
+    fn find_emission(&self, medium: MediumId, emitted: Lanes, sink: &mut impl Sink) {
         if !emitted.is_zero() {
-            sink.add(emitted, &self.history);
+            sink.add(emitted, &self.history, None, Source::Medium(medium));
         }
     }
 
@@ -218,7 +252,7 @@ impl Path {
                     scene.lights.probability(&self.last_vertex, *id)
                         * light.pdf_towards(&self.last_vertex, self.ray.dir)
                 });
-                sink.add(weight * le, &self.history);
+                sink.add(weight * le, &self.history, None, Source::Sky(*id));
             }
         }
     }
@@ -232,7 +266,7 @@ impl Path {
             let weight = self.weights.emission(|| {
                 scene.lights.probability(&self.last_vertex, id) * light.pdf(&self.last_vertex, hit.p, hit.ng)
             });
-            sink.add(weight * le, &self.history);
+            sink.add(weight * le, &self.history, None, Source::Light(id));
         }
     }
 
@@ -300,7 +334,7 @@ impl Path {
             self.sample_light(scene, vertex, &reference, &light, sink, tally);
         }
         if !self.weights.throughput().is_finite() {
-            sink.add(self.weights.beta, &self.history); // the film counts and locates it
+            sink.add(self.weights.beta, &self.history, None, Source::Fault); // the film counts and locates it
             return Status::Done;
         }
         if !self.survives(settings.roulette) {
@@ -323,6 +357,7 @@ impl Path {
         }
         self.history.eta_scale *= scattered.eta * scattered.eta;
         self.history.scattered(scattered.specular);
+        sink.turned(&mut self.history, &vertex.turn(scattered.crossed, scattered.specular), 1);
         self.history.passes = self.history.passes.saturating_add(u16::from(passes));
         self.last_vertex = reference;
         self.ray = scattered.ray;
@@ -386,7 +421,9 @@ impl Path {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
             let Attempt { odds, supposed, .. } = *attempt;
             let weight = self.weights.light_sample(supposed * probability * sample.pdf, scatter_pdf, transmittance);
-            sink.add(weight * (supposed / odds) * f * sample.li, &self.history);
+            let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
+            let source = if light.is_environment() { Source::Sky(id) } else { Source::Light(id) };
+            sink.add(weight * (supposed / odds) * f * sample.li, &self.history, Some(turn), source);
         }
     }
 

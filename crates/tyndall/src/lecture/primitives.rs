@@ -104,6 +104,7 @@ enum Place<'s> {
     },
     Collision {
         p: Vec3,
+        medium: MediumId,
         phase: &'s Phase,
     },
     /// Seen from a point.
@@ -139,7 +140,7 @@ impl<'s> Point<'s> {
     fn vertex(&self, scene: &Scene, omega: Vec3) -> Option<Vertex<'s>> {
         match self.place {
             Place::Surface { hit, bsdf, relief, .. } => Some(Vertex::met(scene, hit, bsdf, -omega, relief)),
-            Place::Collision { p, phase } => Some(Vertex::Medium { p, dir: omega, phase }),
+            Place::Collision { p, medium, phase } => Some(Vertex::Medium { p, dir: omega, medium, phase }),
             Place::Eye(_) | Place::Infinity(_) => None,
         }
     }
@@ -301,7 +302,7 @@ impl<'a> World<'a> {
         match self.scatterer(y) {
             Some(id) if self.scene.may_contain(id, p) => {
                 self.tally.collisions += 1;
-                let place = Place::Collision { p, phase: &self.scene.medium(id).phase };
+                let place = Place::Collision { p, medium: id, phase: &self.scene.medium(id).phase };
                 Point { place, within: y.within, inside: y.inside, distance: s }
             }
             _ => {

@@ -1,9 +1,10 @@
 //! How a path enters a walk deep inside a medium, and how it comes back. See [`crate::integrator::walk`].
 
-use super::{Event, Path};
+use super::{Event, Path, Turn};
 use crate::{
     integrator::{
         VolPath,
+        volpath::Sink,
         walk::{Ball, Depths, End, Walker},
     },
     light::Reference,
@@ -136,7 +137,7 @@ impl Path {
 
     /// Comes back from a walk.
     #[inline]
-    pub fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
+    pub fn end_walk(&mut self, walker: &Walker, end: End, phase: &Phase, sink: &impl Sink, tally: &mut Tally) {
         let Some(depths) = self.around.depths else { return };
         tally.collisions += u64::from(walker.collisions);
         self.ray = Ray::new(walker.p, walker.dir);
@@ -149,6 +150,7 @@ impl Path {
             End::Leaves => {
                 if walker.collisions > 0 {
                     self.history.walked(walker.collisions);
+                    sink.turned(&mut self.history, &Turn::Medium(depths.id), walker.collisions);
                     let odds = depths.odds(self.around.ball.room(walker.p).max(0.0));
                     self.weights.scatter(Lanes::ONE, phase.eval(walker.cos_theta), odds);
                     self.last_vertex = Reference { p: walker.p, normal: None };
@@ -158,6 +160,7 @@ impl Path {
             // The last collision is an event still to come, which counts itself.
             End::Light | End::Roulette => {
                 self.history.walked(walker.collisions - 1);
+                sink.turned(&mut self.history, &Turn::Medium(depths.id), walker.collisions - 1);
                 Left::Collision { lit: end == End::Light }
             }
         };
@@ -169,7 +172,7 @@ impl Path {
         match (self.around.left, self.around.depths) {
             (Left::Collision { .. }, Some(depths)) => {
                 let phase = &scene.medium(depths.id).phase;
-                Some(Event::Scatter { p: self.ray.origin, phase, emitted: Lanes::ZERO })
+                Some(Event::Scatter { p: self.ray.origin, medium: depths.id, phase, emitted: Lanes::ZERO })
             }
             _ => None,
         }

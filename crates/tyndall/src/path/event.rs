@@ -3,7 +3,7 @@
 use super::Path;
 use crate::{
     math::{Vec3, fast},
-    medium::{Inside, bodies::Part},
+    medium::{Inside, MediumId, bodies::Part},
     phase::Phase,
     scene::Scene,
     shape::Interaction,
@@ -22,6 +22,8 @@ pub enum Event<'s> {
     Scatter {
         /// Where [length].
         p: Vec3,
+        /// In which medium.
+        medium: MediumId,
         /// How it scatters there.
         phase: &'s Phase,
         /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
@@ -31,6 +33,8 @@ pub enum Event<'s> {
     Absorb {
         /// Where [length].
         p: Vec3,
+        /// In which medium.
+        medium: MediumId,
         /// What the medium emits there towards the camera [W·m⁻²·sr⁻¹].
         emitted: Lanes,
     },
@@ -104,7 +108,7 @@ impl Path {
         let p = self.ray.at(flight);
         if !scene.may_contain(id, p) {
             tally.leaks += 1;
-            return Event::Absorb { p, emitted: Lanes::ZERO };
+            return Event::Absorb { p, medium: id, emitted: Lanes::ZERO };
         }
         tally.collisions += 1;
         let transmittance = coefficients.transmittance(flight);
@@ -114,12 +118,12 @@ impl Path {
             coefficients.source * self.weights.volume_emission(coefficients.sigma_t, transmittance)
         };
         if coefficients.sigma_s.is_zero() {
-            return Event::Absorb { p, emitted };
+            return Event::Absorb { p, medium: id, emitted };
         }
         self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
         if let Some(Part { share, probability, .. }) = part {
             self.weights.choose(share, probability, self.hero);
         }
-        Event::Scatter { p, phase: &scene.medium(id).phase, emitted }
+        Event::Scatter { p, medium: id, phase: &scene.medium(id).phase, emitted }
     }
 }

@@ -19,6 +19,8 @@ pub struct History {
     pub parted: bool,
     /// Vertices that a limit on the depth does not count.
     pub passes: u16,
+    /// The state of the automaton that takes light apart, if there is one: see [`crate::lpe`].
+    pub state: u16,
 }
 
 /// Dirac lobes in a row after which light counts as trapped.
@@ -74,6 +76,6 @@ impl History {
 
 impl Default for History {
     fn default() -> Self {
-        Self { vertices: 0, order: 0, eta_scale: 1.0, flights: 0, specular_run: 0, parted: false, passes: 0 }
+        Self { vertices: 0, order: 0, eta_scale: 1.0, flights: 0, specular_run: 0, parted: false, passes: 0, state: 0 }
     }
 }

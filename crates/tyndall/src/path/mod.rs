@@ -4,12 +4,14 @@ pub mod deep;
 pub mod event;
 pub mod history;
 pub mod shadow;
+pub mod turn;
 pub mod vertex;
 pub mod weights;
 
 pub use deep::{Attempt, Surroundings};
 pub use event::Event;
 pub use history::History;
+pub use turn::{Kind, Source, Turn};
 pub use vertex::Vertex;
 pub use weights::PathWeights;
 

@@ -1,9 +1,11 @@
 //! A place where a path scatters: on a surface or in a medium, with one interface for both.
 
+use super::turn::{Kind, Turn};
 use crate::{
     bsdf::Bsdf,
     light::Reference,
     math::{Frame, Ray, Vec2, Vec3},
+    medium::MediumId,
     phase::{Phase, deflect},
     relief::{Embossed, Relief, unshadowed},
     scene::{MaterialId, Scene},
@@ -33,6 +35,8 @@ pub enum Vertex<'s> {
         p: Vec3,
         /// Direction of travel before the collision.
         dir: Vec3,
+        /// Which medium.
+        medium: MediumId,
         /// How it scatters.
         phase: &'s Phase,
     },
@@ -178,7 +182,7 @@ impl<'s> Vertex<'s> {
                     if retry { sample_surface(hit, &flat, bsdf, wo, u_lobe, u) } else { None }
                 })
             }
-            Self::Medium { p, dir, phase } => {
+            Self::Medium { p, dir, phase, .. } => {
                 let cos_theta = phase.sample(u);
                 let dir = deflect(*dir, cos_theta, v);
                 let pdf = phase.eval(cos_theta);
@@ -201,6 +205,22 @@ impl<'s> Vertex<'s> {
         match self {
             Self::Surface { hit, bsdf, .. } => dir.dot(hit.ng) * travel.dot(hit.ng) > 0.0 && bsdf.transmits(),
             Self::Medium { .. } => false,
+        }
+    }
+
+    /// The event that going on from here is: on the other side of a surface or on this one, by a Dirac lobe or not.
+    #[inline]
+    pub fn turn(&self, crossed: bool, specular: bool) -> Turn {
+        match self {
+            Self::Surface { hit, bsdf, .. } => {
+                let kind = match specular {
+                    true => Kind::Specular,
+                    false if bsdf.is_diffuse() => Kind::Diffuse,
+                    false => Kind::Glossy,
+                };
+                Turn::Surface { object: hit.object, crossed, kind }
+            }
+            Self::Medium { medium, .. } => Turn::Medium(*medium),
         }
     }
 

@@ -1,0 +1,165 @@
+//! Layers that have names, and lists of layers as users write them: `direct,indirect,orders:8,caustic=CDS+L`.
+//!
+//! | name | its light was scattered | expression |
+//! |---|---|---|
+//! | `all` | in any way | `C.*[LOB]` |
+//! | `emission` | not at all | `C[LOB]` |
+//! | `direct` | once, by a surface or a medium | `C.[LOB]` |
+//! | `indirect` | more than once | `C..+[LOB]` |
+//! | `unscattered` | by no medium | `C[RT]*[LOB]` |
+//! | `single` | by media once, and by surfaces as often as it likes | `C[RT]*V[RT]*[LOB]` |
+//! | `multiple` | by media more than once | `C[RT]*V[RT]*V.*[LOB]` |
+//! | `order3` | by media three times | `C[RT]*(V[RT]*){3}[LOB]` |
+//! | `order9up` | by media nine times or more | `C[RT]*(V[RT]*){9,}[LOB]` |
+//! | `surface`, `volume` | in any way; what is seen there is a surface, a medium | `C[RT].*[LOB]`, `CV.*[LOB]` |
+//!
+//! With `_surface` or `_volume` behind it, a layer is that part of it in which a surface or a medium was the first to scatter,
+//! seen from the camera: `direct_volume` is `CV[LOB]`. `orders:8` stands for `order0` to `order8` and `order9up`.
+//!
+//! `emission`, `direct` and `indirect` add up to all light; so do `unscattered`, `single` and `multiple`, and `orders:N`.
+
+use super::{PathLayer, parse};
+
+/// Names of layers with their expressions, and with their parts behind `_surface` and `_volume` where they have such.
+const NAMED: [(&str, &str, [&str; 2]); 9] = [
+    ("all", "C.*[LOB]", ["", ""]),
+    ("emission", "C[LOB]", ["", ""]),
+    ("direct", "C.[LOB]", ["C[RT][LOB]", "CV[LOB]"]),
+    ("indirect", "C..+[LOB]", ["C[RT].+[LOB]", "CV.+[LOB]"]),
+    ("unscattered", "C[RT]*[LOB]", ["", ""]),
+    ("single", "C[RT]*V[RT]*[LOB]", ["C[RT]+V[RT]*[LOB]", "CV[RT]*[LOB]"]),
+    ("multiple", "C[RT]*V[RT]*V.*[LOB]", ["C[RT]+V[RT]*V.*[LOB]", "CV[RT]*V.*[LOB]"]),
+    ("surface", "C[RT].*[LOB]", ["", ""]),
+    ("volume", "CV.*[LOB]", ["", ""]),
+];
+/// Further forms, for messages.
+const FORMS: [&str; 4] = ["order3", "order9up", "orders:8", "NAME=EXPRESSION"];
+/// Orders that `orders:N` tells apart.
+const MOST_ORDERS: u32 = 60;
+/// Names that the file has for other things.
+const TAKEN: [&str; 3] = ["stderr", "R", "G"];
+
+/// What is wrong with a list of layers.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ListError(pub String);
+
+/// The layers that a list asks for, one after the other.
+///
+/// # Errors
+/// Unknown or doubled names, faulty expressions.
+pub fn list(text: &str) -> Result<Vec<PathLayer>, ListError> {
+    items(pieces(text).into_iter())
+}
+
+/// The same of a list in pieces.
+///
+/// # Errors
+/// As [`list`].
+pub fn items<'a>(pieces: impl Iterator<Item = &'a str>) -> Result<Vec<PathLayer>, ListError> {
+    let mut layers: Vec<PathLayer> = Vec::new();
+    for item in pieces.map(str::trim).filter(|item| !item.is_empty()) {
+        for layer in self::item(item)? {
+            if layers.iter().any(|other| other.name == layer.name) {
+                return Err(ListError(format!("two layers are called `{}`", layer.name)));
+            }
+            layers.push(layer);
+        }
+    }
+    Ok(layers)
+}
+
+/// Parts between commas, but for those in braces and quotes.
+fn pieces(text: &str) -> Vec<&str> {
+    let (mut pieces, mut start) = (Vec::new(), 0);
+    let (mut braces, mut quote) = (0i32, None);
+    for (at, c) in text.char_indices() {
+        match (c, quote) {
+            ('\'' | '"', None) => quote = Some(c),
+            (c, Some(open)) if c == open => quote = None,
+            ('{', None) => braces += 1,
+            ('}', None) => braces -= 1,
+            (',', None) if braces <= 0 => {
+                pieces.push(&text[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    pieces.push(&text[start..]);
+    pieces
+}
+
+fn item(item: &str) -> Result<Vec<PathLayer>, ListError> {
+    if let Some((name, text)) = item.split_once('=') {
+        let name = name.trim();
+        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || !name.chars().all(is_word) || TAKEN.contains(&name) || name == "B" {
+            let help = "letters, digits, `_` and `-` make a name; `stderr`, R, G and B are taken";
+            return Err(ListError(format!("a layer cannot be called `{name}`: {help}")));
+        }
+        return Ok(vec![layer(name, text.trim())?]);
+    }
+    if let Some(most) = item.strip_prefix("orders:") {
+        let most = most.parse().ok().filter(|n| *n <= MOST_ORDERS).ok_or_else(|| {
+            ListError(format!("`{item}` names no orders: orders:N has N from 0 to {MOST_ORDERS}, as in orders:8"))
+        })?;
+        let last = format!("order{}up", most + 1);
+        return (0..=most).map(|n| format!("order{n}")).chain([last]).map(|name| named(&name)).collect();
+    }
+    Ok(vec![named(item)?])
+}
+
+fn layer(name: &str, text: &str) -> Result<PathLayer, ListError> {
+    let expr = parse(text).map_err(|e| ListError(format!("layer `{name}`: {}", e.shown(text))))?;
+    Ok(PathLayer { name: name.into(), text: text.into(), expr })
+}
+
+/// The layer of a name.
+///
+/// # Errors
+/// There is none.
+pub fn named(name: &str) -> Result<PathLayer, ListError> {
+    let (base, part) = match (name.strip_suffix("_surface"), name.strip_suffix("_volume")) {
+        (Some(base), _) => (base, Some(0)),
+        (_, Some(base)) => (base, Some(1)),
+        _ => (name, None),
+    };
+    let text = match NAMED.iter().find(|(known, ..)| *known == base) {
+        Some((_, whole, parts)) => Some(part.map_or(*whole, |part| parts[part]).to_owned()),
+        None => order(base, part),
+    };
+    match text.as_deref() {
+        Some("") => Err(ListError(format!("`{base}` is not divided by what scatters first: there is no `{name}`"))),
+        Some(text) => layer(name, text),
+        None => Err(unknown(name)),
+    }
+}
+
+/// `order3`, `order9up`.
+fn order(base: &str, part: Option<usize>) -> Option<String> {
+    let digits = base.strip_prefix("order")?;
+    let (digits, up) = digits.strip_suffix("up").map_or((digits, ""), |digits| (digits, ","));
+    let n = digits.parse::<u32>().ok().filter(|n| *n <= MOST_ORDERS + 1 && digits == n.to_string())?;
+    Some(match (n, part) {
+        (0, _) if up.is_empty() => part.map_or("C[RT]*[LOB]".into(), |_| String::new()),
+        (_, None) => format!("C[RT]*(V[RT]*){{{n}{up}}}[LOB]"),
+        (0, _) => String::new(),
+        (_, Some(0)) => format!("C[RT]+(V[RT]*){{{n}{up}}}[LOB]"),
+        (_, Some(_)) => format!("CV[RT]*(V[RT]*){{{}{up}}}[LOB]", n - 1),
+    })
+}
+
+fn unknown(name: &str) -> ListError {
+    if parse(name).is_ok() && name.starts_with('C') {
+        return ListError(format!("`{name}` is an expression without a name: write NAME={name}"));
+    }
+    let names: Vec<_> = NAMED.iter().map(|(known, ..)| *known).chain(FORMS).collect();
+    let distance = |known: &&&str| strsim::damerau_levenshtein(name, known);
+    let near = names.iter().filter(|_| name.len() < 64).min_by_key(distance).filter(|near| distance(near) <= 2);
+    let help = match near {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("known are {}", names.join(", ")),
+    };
+    ListError(format!("there is no layer `{name}`: {help}"))
+}

@@ -1,0 +1,190 @@
+//! Light taken apart: layers add up to the image, do not change it, and are what closed forms say.
+
+mod common;
+
+use common::{World, diffuse, glass, grey, medium};
+use tyndall::{
+    bsdf::Sides,
+    camera::{CameraModel, Orthographic, Perspective},
+    film::{Average, Film, Layer},
+    integrator::{Deep, VolPath},
+    light::{Distant, Light},
+    lpe::{Names, named},
+    material::Material,
+    math::Vec3,
+    medium::Homogeneous,
+    render::{Settings, render},
+    sampling::SamplerKind,
+    scene::Scene,
+    spectrum::{ColorMode, Spectrum},
+};
+
+const PARTITIONS: [&str; 4] = [
+    "emission,direct,indirect",
+    "unscattered,single,multiple",
+    "orders:3",
+    "emission,direct_surface,direct_volume,indirect_surface,indirect_volume",
+];
+
+fn taken_apart(mut scene: Scene, list: &str) -> Scene {
+    scene.take_apart(&named::list(list).unwrap(), &Names::default()).unwrap();
+    scene
+}
+
+/// A ball of cloudy glass that glows, painted under a polish, and a box of mist, on a floor under a lamp and a sky.
+fn still_life(color: ColorMode) -> World {
+    let mut world = World::seen(Vec3::new(0.0, 2.0, 6.0), Vec3::new(0.0, 0.3, 0.0));
+    world.color = color;
+    world.camera.view.model = CameraModel::Perspective(Perspective::pinhole([-0.4, 0.4, -0.4, 0.4]));
+    (world.camera.width, world.camera.height) = (12, 12);
+    world.camera.exposure = 1.7;
+    let glowing = Homogeneous { emission: Some(grey(0.3)), ..medium([0.3, 0.2, 0.1], [8.0, 9.0, 11.0], 0.4) };
+    world.sphere(Vec3::new(-1.0, 0.0, 0.0), 0.9, glass(1.4, 0.0), Some(glowing));
+    let mist = medium([0.1, 0.0, 0.0], [1.0, 2.0, 3.0], 0.0);
+    world.cuboid(Vec3::new(0.3, -0.9, -0.8), Vec3::new(1.9, 0.7, 0.8), Material::Null, Some(mist));
+    let polished = Material::Plastic {
+        eta: 1.5,
+        internal: tyndall::bsdf::internal_reflectance(1.5),
+        reflectance: 0.5.into(),
+        nonlinear: false,
+        tint: 1.0.into(),
+        sides: Sides::Both,
+    };
+    world.cuboid(Vec3::new(-9.0, -1.2, -9.0), Vec3::new(9.0, -1.0, 9.0), polished, None);
+    world.shining_disk(3.0, 0.7, diffuse(0.0), 4.0);
+    world.sky(0.4);
+    world
+}
+
+fn picture(scene: &Scene, deep: Deep, spp: u32) -> Film {
+    let settings = Settings { spp, seed: 3, ..Settings::default() };
+    let rendering = render(scene, &VolPath { deep, ..VolPath::default() }, &settings, &());
+    assert_eq!(rendering.tally.bad_samples, 0);
+    rendering.film
+}
+
+#[test]
+fn light_has_the_same_bits_with_and_without_layers_of_it() {
+    for color in [ColorMode::Rgb, ColorMode::Spectral] {
+        let whole = still_life(color).scene();
+        let apart = taken_apart(still_life(color).scene(), "orders:8,direct,indirect,volume");
+        for deep in [Deep::Traced, Deep::Alone, Deep::Together] {
+            assert_eq!(picture(&apart, deep, 8).pixels, picture(&whole, deep, 8).pixels, "{color:?} {deep:?}");
+        }
+        assert_eq!(picture(&apart, Deep::Alone, 8), picture(&apart, Deep::Together, 8));
+    }
+}
+
+/// In the sums nothing is lost: 144 pixels of a few dozen samples, to 2⁻⁴⁰ of what is added. In the file a mean is
+/// rounded to single precision; where no part is negative, as in rgb mode, the sum is off by one unit in the last place at
+/// most. Each layer has light somewhere.
+#[test]
+fn layers_of_a_partition_add_up_to_the_image() {
+    for (color, partition) in PARTITIONS.iter().flat_map(|p| [(ColorMode::Rgb, p), (ColorMode::Spectral, p)]) {
+        let film = picture(&taken_apart(still_life(color).scene(), partition), Deep::Together, 20);
+        for layer in &film.layers {
+            assert!(layer.cells.iter().any(|cell| cell.sum[1] > 0.0), "{:?}", layer.kind.channels);
+        }
+        for (i, pixel) in film.pixels.iter().enumerate() {
+            for c in 0..3 {
+                let parts = film.layers.iter().map(|layer| layer.cells[i].sum[c]);
+                let (sum, size) = parts.fold((0.0, 0.0), |(sum, size), v| (sum + v, size + f64::abs(v)));
+                assert!((sum - pixel.sum[c]).abs() <= size * 2f64.powi(-40), "{partition} {color:?}");
+                if color == ColorMode::Rgb {
+                    let mean = |layer: &Layer| f64::from(layer.cells[i].value(Average::Samples, pixel.count)[c]);
+                    let sum = film.layers.iter().map(mean).sum::<f64>() as f32;
+                    let apart = sum.to_bits().abs_diff(pixel.mean()[c].to_bits());
+                    assert!(apart <= 1, "{partition}: {sum} and {}", pixel.mean()[c]);
+                }
+            }
+        }
+    }
+}
+
+/// What each layer of the one pixel is: mean and standard error of its green.
+fn measured(scene: &Scene, spp: u32) -> Vec<(f64, f64)> {
+    let settings = Settings { spp, seed: 5, sampler: SamplerKind::Independent, ..Settings::default() };
+    let film = render(scene, &VolPath::default(), &settings, &()).film;
+    let count = film.pixels[0].count;
+    let of = |layer: &Layer| {
+        let cell = &layer.cells[0];
+        (cell.sum[1] / count as f64, f64::from(cell.standard_error(count)[1]))
+    };
+    film.layers.iter().map(of).collect()
+}
+
+/// Rows of numbers, after lines that begin with `#` and the names of the columns.
+fn rows(table: &str) -> Vec<Vec<f64>> {
+    let lines = table.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines.map(|line| line.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect()).collect()
+}
+
+/// Light on a half-space that scatters alike in all directions, by the number of collisions: Chandrasekhar's table has the
+/// first, the second, and all but the first. The half-space is a slab of 200 mean free paths, which lets e⁻²⁰⁰ through
+/// unscattered and of what is scattered, at these albedos, less than 1e-19.
+#[test]
+fn single_double_and_multiple_scattering_are_those_of_a_half_space() {
+    let table = rows(include_str!("../../tyndall-lab/data/chandrasekhar_brdf.csv"));
+    let mut checked = 0;
+    for row in &table {
+        let [albedo, mu_i, mu_o, _, f1, f2, multiple] = row[..] else { panic!("{row:?}") };
+        if ![0.5, 0.9].contains(&albedo) || ![0.3, 0.7].contains(&mu_i) || ![0.7, 1.0].contains(&mu_o) {
+            continue;
+        }
+        let towards = |mu: f64| Vec3::new((1.0 - mu * mu).sqrt() as f32, mu as f32, 0.0);
+        let mut world = World::seen(5.0 * towards(mu_o), Vec3::ZERO);
+        world.slab(200.0, Material::Null, medium([1.0 - albedo as f32; 3], [albedo as f32; 3], 0.0));
+        // 1/μ of light on a plane that faces it: f itself comes back.
+        let sun = (1.0 / mu_i) as f32;
+        world.lights.push(Light::Distant(Distant {
+            towards: towards(mu_i),
+            irradiance: Spectrum::illuminant_rgb([sun; 3]),
+            luminance: sun,
+        }));
+        let found = measured(&taken_apart(world.scene(), "orders:2,direct,indirect"), 20_000);
+        let expected = [0.0, f1, f2, multiple - f2, f1, multiple];
+        for ((mean, error), expected) in found.into_iter().zip(expected) {
+            assert!((mean - expected).abs() <= 4.5 * error + 1e-6 * expected, "{row:?}: {mean} ± {error}, {expected}");
+            assert!(error <= 0.04 * expected, "{row:?}: too blunt, {error} of {expected}");
+        }
+        checked += 1;
+    }
+    assert!(checked >= 4, "{checked}");
+}
+
+/// A ball in a uniform sky, seen over a square that it just fills: of the disk, `1 − A(c)` of the sky is left for the albedo
+/// `c`, and nothing changes beside it. Each order is a power of the albedo, so a render with one albedo tells, order by order,
+/// what any other would leave: `Σ (c′/c)ⁿ Lₙ`.
+#[test]
+fn orders_of_one_ball_tell_what_balls_of_other_albedos_absorb() {
+    const ORDERS: usize = 40;
+    let disk = std::f64::consts::FRAC_PI_4;
+    let table = rows(include_str!("../../tyndall-lab/data/sphere_escape_absorption.csv"));
+    for radius in [1.0, 2.0] {
+        let mut world = World::seen(Vec3::new(0.0, 0.0, 50.0), Vec3::ZERO);
+        let r = radius as f32;
+        world.camera.view.model = CameraModel::Orthographic(Orthographic { window: [-r, r, -r, r] });
+        world.sphere(Vec3::ZERO, r, Material::Null, Some(medium([0.1; 3], [0.9; 3], 0.0)));
+        world.sky(1.0);
+        let found = measured(&taken_apart(world.scene(), &format!("orders:{ORDERS}")), 60_000);
+        let mut checked = 0;
+        for row in table.iter().filter(|row| row[0] == radius && row[1] <= 0.9) {
+            let (ratio, absorbed) = (row[1] / 0.9, row[4]);
+            let weighed = |pick: fn(&(f64, f64)) -> f64| -> f64 {
+                found[..=ORDERS].iter().enumerate().map(|(n, layer)| ratio.powi(n as i32) * pick(layer)).sum()
+            };
+            // Of higher orders something between nothing and all.
+            let rest = found[ORDERS + 1].0 * ratio.powi(ORDERS as i32 + 1);
+            let (mean, error) = (weighed(|l| l.0) + rest / 2.0, weighed(|l| l.1));
+            let expected = 1.0 - disk * absorbed;
+            assert!(
+                (mean - expected).abs() <= 4.5 * error + rest / 2.0,
+                "radius {radius}, albedo {}: {mean} ± {error}, expected {expected}",
+                row[1]
+            );
+            assert!(error + rest < 0.01, "too blunt: {error} {rest}");
+            checked += 1;
+        }
+        assert!(checked >= 2, "radius {radius}: {checked} rows");
+    }
+}
