@@ -7,7 +7,7 @@ use tyndall::film::Crop;
 
 use crate::{
     commands::{lab::options::Instrument, mix::options::MixOptions},
-    values,
+    values::{self, LayerList},
 };
 
 /// A renderer for light that scatters many times: milk, marble, skin, fog.
@@ -39,6 +39,8 @@ pub(crate) enum Command {
     Mix(Box<MixOptions>),
     /// List all materials that have a name, each with its colour
     Materials(MaterialsOptions),
+    /// List the layers of light that have names, or say in words what an expression selects
+    Layers(LayersOptions),
     /// Measure published numbers, and say whether the program reproduces them
     Verify(VerifyOptions),
 }
@@ -53,6 +55,7 @@ Examples:
   tyndall render scene.xml -D spp=64 -D g=0.9       set the scene's $parameters
   tyndall render scene.pbrt --crop 100,50,164,98    a part of the image, the same bits as in the whole
   tyndall render scene.pbrt --json - --quiet        statistics on standard output, nothing else
+  tyndall render scene.pbrt --layers orders:8       light apart by the number of collisions: see tyndall layers
 
 Ctrl-C ends the render and saves what is done; a second Ctrl-C leaves at once. The image so far is also saved every
 ten seconds. Exit status: 0 done, 2 failed, 130 stopped by Ctrl-C.")]
@@ -94,6 +97,11 @@ pub(crate) struct RenderOptions {
     /// Size of the whole image instead of the scene's, for previews
     #[arg(long, value_name = "WxH", value_parser = values::resolution, help_heading = "What to render")]
     pub(crate) resolution: Option<[u32; 2]>,
+
+    /// Parts of the light to record too, each a layer of the EXR: direct, single, orders:8, NAME=EXPRESSION, …; see
+    /// tyndall layers [default: the scene's]
+    #[arg(long, value_name = "LIST", value_parser = values::layers, help_heading = "What to render")]
+    pub(crate) layers: Option<LayerList>,
 
     /// How light is transported
     #[arg(long, value_name = "NAME", default_value = "volpath", help_heading = "How to render")]
@@ -141,6 +149,26 @@ pub(crate) struct MaterialsOptions {
     /// Write the list as a page (index.html) in this directory
     #[arg(long, value_name = "DIR")]
     pub(crate) page: Option<PathBuf>,
+}
+
+/// Lists the layers of light that have names, or says what an expression selects.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tyndall layers                            the layers that have names, with their expressions
+  tyndall layers --explain 'CD+S+L'         what an expression selects, in words
+  tyndall layers --explain orders:2         the same of a list of layers
+  tyndall render scene.pbrt --layers emission,direct,indirect
+  tyndall render scene.pbrt --layers \"caustic=CDS+L,milk=C.*V'milk'.*[LOB]\"
+
+An expression is a pattern over what a path of light goes through, from the camera: C the camera, R and T reflection and
+transmission, S, G and D a sharp, glossy or diffuse one, V scattering in a medium, L a light, O matter that glows, B the
+background, . anything. <RD> is both; V'milk' bears a name; [RV] is one of several, [^V] any other; * + ? {2} {2,4} repeat;
+| and parentheses as usual. The book has more: docs/src/layers.md.")]
+pub(crate) struct LayersOptions {
+    /// An expression, or a list of layers as --layers of tyndall render takes it
+    #[arg(long, value_name = "EXPR|LIST")]
+    pub(crate) explain: Option<String>,
 }
 
 /// Compares two images.

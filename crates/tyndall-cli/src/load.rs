@@ -4,13 +4,13 @@ use std::{io::IsTerminal, path::PathBuf, time::Instant};
 
 use tyndall::{film::Crop, scene::Scene, spectrum::ColorMode};
 use tyndall_formats::{
-    desc::SceneDesc,
+    desc::{PartsDesc, SceneDesc},
     error::{Diagnostics, Unsupported},
     film::hash,
     source::SourceMap,
 };
 
-use crate::args::SceneOptions;
+use crate::{args::SceneOptions, values::LayerList};
 
 /// A scene, ready to be rendered, and what its file says about rendering it.
 #[derive(Debug)]
@@ -29,17 +29,21 @@ pub(crate) struct Loaded {
     pub(crate) build_seconds: f64,
 }
 
-/// Reads and builds a scene, at another resolution if asked; its colour is what its film needs, if nothing is said.
+/// Reads and builds a scene, at another resolution and with other layers of light if asked; its colour is what its film needs, if nothing is said.
 pub(crate) fn load(
     input: &SceneOptions,
     resolution: Option<[u32; 2]>,
     color: Option<ColorMode>,
+    layers: Option<&LayerList>,
 ) -> anyhow::Result<Loaded> {
     let start = Instant::now();
     let unsupported = if input.lenient { Unsupported::Warn } else { Unsupported::Refuse };
     let (mut desc, sources) = tyndall_formats::load(&input.scene, &input.define, unsupported)?;
     if let Some([width, height]) = resolution {
         resize(&mut desc, width, height);
+    }
+    if let Some(LayerList(layers)) = layers {
+        desc.film.parts = PartsDesc { span: None, layers: layers.clone() };
     }
     let load_seconds = start.elapsed().as_secs_f64();
 

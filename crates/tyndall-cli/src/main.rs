@@ -38,6 +38,7 @@ fn main() -> ExitCode {
         Command::Lab(instrument) => commands::lab::run(&instrument),
         Command::Mix(options) => commands::mix::run(&options),
         Command::Materials(options) => commands::materials::run(&options),
+        Command::Layers(options) => commands::layers::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
     };
     outcome.unwrap_or_else(|error| {

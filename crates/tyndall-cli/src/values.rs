@@ -2,7 +2,10 @@
 
 use std::time::Duration;
 
-use tyndall::film::Crop;
+use tyndall::{
+    film::Crop,
+    lpe::{PathLayer, named},
+};
 
 /// `30s`, `2m`, `1.5h`, `500ms`; a bare number is seconds.
 pub(crate) fn duration(word: &str) -> Result<Duration, String> {
@@ -49,6 +52,15 @@ pub(crate) fn definition(word: &str) -> Result<(String, String), String> {
         Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
         _ => Err("expected NAME=VALUE, such as spp=64".into()),
     }
+}
+
+/// Layers of light.
+#[derive(Debug, Clone)]
+pub(crate) struct LayerList(pub(crate) Vec<PathLayer>);
+
+/// `direct,orders:8,NAME=EXPRESSION`; nothing is none.
+pub(crate) fn layers(word: &str) -> Result<LayerList, String> {
+    named::list(word).map(LayerList).map_err(|e| e.to_string())
 }
 
 /// A finite number.

@@ -91,7 +91,9 @@ struct Tile {
 /// Renders a scene on the current rayon thread pool. Layers that the integrator cannot tell are not on the film.
 pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, observer: &dyn Observer) -> Rendering {
     let camera = &scene.camera;
-    let work = Work { scene, integrator, settings, apart: scene.paths.as_ref().zip(integrator.apart()) };
+    let is_part = |layer: &LayerKind| matches!(layer.recorded, Recorded::Paths(_));
+    let paths = scene.paths.as_ref().filter(|_| camera.layers.iter().any(is_part));
+    let work = Work { scene, integrator, settings, apart: paths.zip(integrator.apart()) };
     let layers: Vec<_> = camera.layers.iter().filter(|layer| work.can_record(layer)).cloned().collect();
     let mut film =
         Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)))

@@ -17,7 +17,7 @@ use crate::{
 
 /// Loads a scene and tells what is in it.
 pub(crate) fn run(options: &InfoOptions) -> anyhow::Result<ExitCode> {
-    let loaded = load(&options.input, None, None)?;
+    let loaded = load(&options.input, None, None, None)?;
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = describe(&mut out, &loaded);

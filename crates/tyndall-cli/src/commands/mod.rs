@@ -4,6 +4,7 @@ pub(crate) mod compare;
 pub(crate) mod convert;
 pub(crate) mod info;
 pub(crate) mod lab;
+pub(crate) mod layers;
 pub(crate) mod lecture;
 pub(crate) mod materials;
 pub(crate) mod mix;

@@ -7,6 +7,7 @@ use cpu_time::ProcessTime;
 use rayon::ThreadPool;
 use tyndall::{
     film::{Crop, Film},
+    integrator::Counted,
     render::{Rendering, Settings, render},
     sampling::SamplerKind,
     spectrum::ColorMode,
@@ -35,7 +36,7 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     let outputs = Outputs::new(&options.output, &options.input.scene, options.tone.into())?;
     outputs.check()?;
     let pool = pool(options.threads)?;
-    let loaded = pool.install(|| load(&options.input, options.resolution, options.color.map(color_mode)))?;
+    let loaded = pool.install(|| load(&options.input, options.resolution, options.color.map(color_mode), options.layers.as_ref()))?;
     loaded.warn();
     let settings = settings(options, &loaded)?;
     let job = Job { options, loaded: &loaded, settings, outputs: &outputs, pool, start: Instant::now() };
@@ -143,6 +144,12 @@ fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings
     ensure!(
         options.max_depth.is_none() || options.integrator == IntegratorName::Volpath,
         "--max-depth is for the integrator volpath; {} has no limit",
+        word(&options.integrator),
+    );
+    ensure!(
+        loaded.scene.paths.is_none() || integrator(options.integrator, None, Counted::default()).apart().is_some(),
+        "{} cannot take light apart: leave out the layers (--layers '' if the scene asks for them), or render with \
+         volpath",
         word(&options.integrator),
     );
     let desc = &loaded.desc;

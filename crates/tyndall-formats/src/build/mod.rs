@@ -8,6 +8,7 @@ mod materials;
 pub(crate) mod media;
 mod meshes;
 mod painted;
+mod parts;
 mod principled;
 pub(crate) mod shapes;
 pub(crate) mod spectra;
@@ -108,7 +109,9 @@ impl Builder<'_> {
         let media = media.into_iter().collect::<Option<Vec<_>>>()?;
         let (shapes, lights, camera) = (shapes?, lights?, camera?);
         let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect());
-        Some(Scene::new(self.color, camera, shapes.geometry, shapes.objects, materials, media, table))
+        let mut scene = Scene::new(self.color, camera, shapes.geometry, shapes.objects, materials, media, table);
+        self.take_apart(&mut scene, shapes.names)?;
+        Some(scene)
     }
 
     fn transform(&mut self, matrix: DMat4, span: Span) -> Option<Transform> {

@@ -31,6 +31,8 @@ use crate::{
 pub(super) struct Shapes {
     pub(super) geometry: Geometry,
     pub(super) objects: Vec<Object>,
+    /// What each object is called, and its material.
+    pub(super) names: Vec<Vec<String>>,
     pub(super) lights: Vec<Light>,
     /// The surfaces of shapes that measure, by their index in the description.
     pub(super) meters: HashMap<usize, Vec<EmitterShape>>,
@@ -41,6 +43,7 @@ pub(super) struct Shapes {
 struct Gathered<'a> {
     builder: GeometryBuilder,
     objects: Vec<Object>,
+    names: Vec<Vec<String>>,
     emitters: Vec<Shining<'a>>,
     painting: Painting,
 }
@@ -80,7 +83,7 @@ impl<'a> Builder<'a> {
         for (index, objects) in objects {
             meters.insert(index, surfaces(&geometry, objects));
         }
-        Some(Shapes { geometry, objects: gathered.objects, lights, meters })
+        Some(Shapes { geometry, objects: gathered.objects, names: gathered.names, lights, meters })
     }
 
     /// The surface of a shape on its own.
@@ -249,6 +252,8 @@ impl<'a> Builder<'a> {
             None => material_id(desc.material.value),
             Some(opacity) => self.pierced(desc.material.value, opacity)?,
         };
+        let material_name = self.desc.material(desc.material.value).and_then(|material| material.name.as_ref());
+        gathered.names.push(desc.name.iter().chain(material_name).cloned().collect());
         gathered.objects.push(Object {
             name: desc.name.clone().unwrap_or_default(),
             material,

@@ -3,6 +3,7 @@
 use glam::DMat4;
 use tyndall::{
     film::{LayerKind, Recorded},
+    lpe::PathLayer,
     spectrum::ColorMode,
 };
 
@@ -251,8 +252,19 @@ pub struct FilmDesc {
     pub filter: FilterDesc,
     /// What is recorded beside light.
     pub layers: Vec<LayerKind>,
+    /// Parts of the light that are recorded too.
+    pub parts: PartsDesc,
     /// Factor on every value (pbrt: `iso` / 100 × time that the shutter is open), 1 by default.
     pub exposure: f64,
+}
+
+/// Parts of the light, by what its paths go through.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PartsDesc {
+    /// The words that ask for them, if the scene does.
+    pub span: Option<Span>,
+    /// They.
+    pub layers: Vec<PathLayer>,
 }
 
 impl FilmDesc {

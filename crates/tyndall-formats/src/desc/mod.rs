@@ -34,7 +34,7 @@ use std::path::PathBuf;
 
 pub use camera::{
     ApertureDesc, CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc,
-    ImageWindow, RealisticDesc, SphereMapping, ThinLensDesc,
+    ImageWindow, PartsDesc, RealisticDesc, SphereMapping, ThinLensDesc,
 };
 pub use hair::{HairColourDesc, HairDesc};
 pub use light::{

@@ -5,6 +5,7 @@
 //! x axis is turned round: `to_world · diag(−1, 1, 1)`.
 
 use glam::{DMat3, DMat4, DVec3};
+use tyndall::lpe::named;
 
 use super::object::{Object, Report};
 use super::scene::Builder;
@@ -12,7 +13,7 @@ use super::tree::Element;
 use super::words;
 use crate::desc::{
     CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc, Ignored, SamplerDesc,
-    ThinLensDesc,
+    ThinLensDesc, PartsDesc
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};
@@ -272,6 +273,7 @@ fn default_film(span: Span) -> FilmDesc {
         diagonal: 35.0,
         filter,
         layers: Vec::new(),
+        parts: PartsDesc::default(),
         exposure: 1.0,
     }
 }
@@ -298,8 +300,21 @@ fn film_desc<'t>(builder: &mut Builder<'t>, element: &'t Element) -> Option<Film
     let format = ["pixel_format", "component_format", "file_format", "compensate", "banner"];
     object.ignore(&format, "the format of the image is chosen on the command line", report);
     object.ignore(&["sample_border"], "the filter is sampled, so no border is needed", report);
+    let parts = parts(&mut object, report);
     object.finish(report);
-    Some(FilmDesc { width: width.value, height: height.value, crop, filter, ..default })
+    Some(FilmDesc { width: width.value, height: height.value, crop, filter, parts, ..default })
+}
+
+/// tyndall's own: parts of the light, by name or expression, between commas.
+fn parts(object: &mut Object, report: &mut Report) -> PartsDesc {
+    let Some(words) = object.string("layers", report) else { return PartsDesc::default() };
+    match named::list(words.value) {
+        Ok(layers) => PartsDesc { span: Some(words.span), layers },
+        Err(error) => {
+            report.errors.push(SceneError::at(words.span, error.to_string()));
+            PartsDesc::default()
+        }
+    }
 }
 
 fn crop(object: &mut Object, width: u32, height: u32, report: &mut Report) -> Option<CropDesc> {

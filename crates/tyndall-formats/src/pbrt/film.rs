@@ -1,10 +1,12 @@
 //! `Film` and `PixelFilter`.
 
+use tyndall::lpe::named;
+
 use super::Reader;
 use super::layers::{gbuffer, spectral};
 use super::params::Params;
 use super::parser::Statement;
-use crate::desc::{CropDesc, FilmDesc, FilterDesc};
+use crate::desc::{CropDesc, FilmDesc, FilterDesc, PartsDesc};
 use crate::error::SceneError;
 use crate::source::Span;
 
@@ -21,6 +23,7 @@ impl FilmDesc {
             diagonal: 35.0,
             filter,
             layers: Vec::new(),
+            parts: PartsDesc::default(),
             exposure: 1.0,
         }
     }
@@ -64,13 +67,14 @@ impl Reader {
             "spectral" => spectral(&mut p),
             _ => Vec::new(),
         };
+        let parts = parts(&mut p);
         self.finish_params(p);
         if self.settings.film.is_some() {
             self.ignore(s.whole, "it replaces the film before");
         }
         let filter = FilmDesc::pbrt_default(s.whole).filter;
         self.settings.film =
-            Some(FilmDesc { span: s.whole, width, height, crop, filename, diagonal, filter, layers, exposure });
+            Some(FilmDesc { span: s.whole, width, height, crop, filename, diagonal, filter, layers, parts, exposure });
     }
 
     pub(super) fn filter(&mut self, mut s: Statement<'_>) {
@@ -132,6 +136,20 @@ fn sensor(p: &mut Params) {
                     "its measured curves may not be passed on; \"cie1931\", the default, sees colours as the eye does",
                 ),
         );
+    }
+}
+
+/// tyndall's own: parts of the light, by name or expression.
+fn parts(p: &mut Params) -> PartsDesc {
+    let words = p.any_strings("layers");
+    let Some(first) = words.first() else { return PartsDesc::default() };
+    let span = Some(first.span);
+    match named::items(words.iter().map(|word| &*word.value)) {
+        Ok(layers) => PartsDesc { span, layers },
+        Err(error) => {
+            p.error(SceneError::at(first.span, error.to_string()));
+            PartsDesc::default()
+        }
     }
 }
 

@@ -250,6 +250,11 @@ impl Params {
         (param.values.strings.len() == count).then(|| param.values.strings.clone())
     }
 
+    /// As many strings as there are.
+    pub(super) fn any_strings(&mut self, name: &'static str) -> Vec<Spanned<String>> {
+        self.take(name, &[ParamType::String]).map_or(Vec::new(), |param| param.values.strings.clone())
+    }
+
     pub(super) fn point(&mut self, name: &'static str, default: [f64; 3]) -> Spanned<[f64; 3]> {
         match self.take_one(name, &[ParamType::Point3]) {
             Some(param) => {

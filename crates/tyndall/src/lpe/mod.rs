@@ -24,6 +24,7 @@
 //! for volumes.
 
 pub mod automaton;
+pub mod explain;
 pub mod letter;
 pub mod named;
 pub mod parse;
@@ -107,6 +108,16 @@ pub struct PathLayer {
     pub text: String,
     /// What it selects.
     pub expr: Expr,
+}
+
+impl PathLayer {
+    /// How a list of layers asks for it.
+    pub fn word(&self) -> String {
+        match named::named(&self.name) {
+            Ok(known) if known == *self => self.name.clone(),
+            _ => format!("{}={}", self.name, self.text),
+        }
+    }
 }
 
 /// What is wrong with an expression.

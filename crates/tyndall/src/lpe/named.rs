@@ -20,17 +20,35 @@
 
 use super::{PathLayer, parse};
 
-/// Names of layers with their expressions, and with their parts behind `_surface` and `_volume` where they have such.
-const NAMED: [(&str, &str, [&str; 2]); 9] = [
-    ("all", "C.*[LOB]", ["", ""]),
-    ("emission", "C[LOB]", ["", ""]),
-    ("direct", "C.[LOB]", ["C[RT][LOB]", "CV[LOB]"]),
-    ("indirect", "C..+[LOB]", ["C[RT].+[LOB]", "CV.+[LOB]"]),
-    ("unscattered", "C[RT]*[LOB]", ["", ""]),
-    ("single", "C[RT]*V[RT]*[LOB]", ["C[RT]+V[RT]*[LOB]", "CV[RT]*[LOB]"]),
-    ("multiple", "C[RT]*V[RT]*V.*[LOB]", ["C[RT]+V[RT]*V.*[LOB]", "CV[RT]*V.*[LOB]"]),
-    ("surface", "C[RT].*[LOB]", ["", ""]),
-    ("volume", "CV.*[LOB]", ["", ""]),
+/// A layer that has a name.
+#[derive(Clone, Copy)]
+struct Named {
+    name: &'static str,
+    whole: &'static str,
+    /// The parts in which a surface or a medium was first to scatter, where it is divided so.
+    parts: Option<[&'static str; 2]>,
+    /// How its light was scattered.
+    meaning: &'static str,
+}
+
+const fn undivided(name: &'static str, whole: &'static str, meaning: &'static str) -> Named {
+    Named { name, whole, parts: None, meaning }
+}
+
+const fn divided(name: &'static str, whole: &'static str, parts: [&'static str; 2], meaning: &'static str) -> Named {
+    Named { name, whole, parts: Some(parts), meaning }
+}
+
+const NAMED: [Named; 9] = [
+    undivided("all", "C.*[LOB]", "in any way"),
+    undivided("emission", "C[LOB]", "not at all"),
+    divided("direct", "C.[LOB]", ["C[RT][LOB]", "CV[LOB]"], "once, by a surface or a medium"),
+    divided("indirect", "C..+[LOB]", ["C[RT].+[LOB]", "CV.+[LOB]"], "more than once"),
+    undivided("unscattered", "C[RT]*[LOB]", "by no medium"),
+    divided("single", "C[RT]*V[RT]*[LOB]", ["C[RT]+V[RT]*[LOB]", "CV[RT]*[LOB]"], "by media once"),
+    divided("multiple", "C[RT]*V[RT]*V.*[LOB]", ["C[RT]+V[RT]*V.*[LOB]", "CV[RT]*V.*[LOB]"], "by media more than once"),
+    undivided("surface", "C[RT].*[LOB]", "in any way; what is seen there is a surface"),
+    undivided("volume", "CV.*[LOB]", "in any way; what is seen there is a medium"),
 ];
 /// Further forms, for messages.
 const FORMS: [&str; 4] = ["order3", "order9up", "orders:8", "NAME=EXPRESSION"];
@@ -43,6 +61,20 @@ const TAKEN: [&str; 3] = ["stderr", "R", "G"];
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct ListError(pub String);
+
+/// Names, expressions and meanings of layers, for people.
+pub fn table() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    let plain = NAMED.into_iter().map(|Named { name, whole, meaning, .. }| (name, whole, meaning));
+    let parts = [
+        ("order3", "C[RT]*(V[RT]*){3}[LOB]", "by media three times"),
+        ("order9up", "C[RT]*(V[RT]*){9,}[LOB]", "by media nine times or more"),
+        ("orders:8", "", "all of order0 to order8, and order9up"),
+        ("direct_surface", "C[RT][LOB]", "as direct, first by a surface, seen from the camera"),
+        ("direct_volume", "CV[LOB]", "as direct, first by a medium; so for indirect, single, multiple, order3"),
+        ("NAME=EXPR", "", "what an expression selects, under a name of your own"),
+    ];
+    plain.chain(parts)
+}
 
 /// The layers that a list asks for, one after the other.
 ///
@@ -125,8 +157,11 @@ pub fn named(name: &str) -> Result<PathLayer, ListError> {
         (_, Some(base)) => (base, Some(1)),
         _ => (name, None),
     };
-    let text = match NAMED.iter().find(|(known, ..)| *known == base) {
-        Some((_, whole, parts)) => Some(part.map_or(*whole, |part| parts[part]).to_owned()),
+    let text = match NAMED.iter().find(|known| known.name == base) {
+        Some(Named { whole, parts, .. }) => Some(match part {
+            None => (*whole).to_owned(),
+            Some(part) => parts.map_or(String::new(), |parts| parts[part].to_owned()),
+        }),
         None => order(base, part),
     };
     match text.as_deref() {
@@ -154,7 +189,7 @@ fn unknown(name: &str) -> ListError {
     if parse(name).is_ok() && name.starts_with('C') {
         return ListError(format!("`{name}` is an expression without a name: write NAME={name}"));
     }
-    let names: Vec<_> = NAMED.iter().map(|(known, ..)| *known).chain(FORMS).collect();
+    let names: Vec<_> = NAMED.iter().map(|known| known.name).chain(FORMS).collect();
     let distance = |known: &&&str| strsim::damerau_levenshtein(name, known);
     let near = names.iter().filter(|_| name.len() < 64).min_by_key(distance).filter(|near| distance(near) <= 2);
     let help = match near {

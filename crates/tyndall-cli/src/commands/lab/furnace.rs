@@ -91,7 +91,7 @@ fn scene(options: &FurnaceOptions, color: ColorMode) -> anyhow::Result<(SceneDes
     let (desc, scene) = match (&options.scene, &options.material) {
         (Some(file), _) => {
             let input = SceneOptions { scene: file.clone(), define: options.define.clone(), lenient: options.lenient };
-            let loaded = load(&input, options.resolution, Some(color))?;
+            let loaded = load(&input, options.resolution, Some(color), None)?;
             loaded.warn();
             (loaded.desc, loaded.scene)
         }

@@ -87,7 +87,7 @@ fn specimen(options: &GonioOptions) -> anyhow::Result<(String, Specimen)> {
 /// A scene file.
 fn read(file: &Path, options: &GonioOptions) -> anyhow::Result<Loaded> {
     let input = SceneOptions { scene: file.to_owned(), define: options.define.clone(), lenient: options.lenient };
-    let loaded = load(&input, None, Some(ColorMode::Rgb))?;
+    let loaded = load(&input, None, Some(ColorMode::Rgb), None)?;
     loaded.warn();
     Ok(loaded)
 }

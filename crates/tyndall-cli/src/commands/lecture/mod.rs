@@ -94,7 +94,7 @@ fn chapter(topic: &Topic, options: &LectureOptions) -> anyhow::Result<Option<Cha
     let path = options.out.join(format!("{}.pbrt", topic.name));
     save::replace(&path, topic.scene.as_bytes())?;
     let input = SceneOptions { scene: path, ..SceneOptions::default() };
-    let loaded = load(&input, options.resolution, Some(ColorMode::Mono))?;
+    let loaded = load(&input, options.resolution, Some(ColorMode::Mono), None)?;
     let bench = Bench::new(&loaded, topic.name, options)?;
 
     let reference = bench.reference();

@@ -10,6 +10,7 @@ use crate::desc::{
 use crate::mitsuba::{NEAR_CLIP, NO_NEAR_CLIP, layer_word};
 use crate::write::number::double;
 use glam::{DMat4, DVec3};
+use tyndall::lpe::PathLayer;
 
 impl Pen<'_, '_> {
     pub(super) fn integrator(&mut self) -> Element {
@@ -187,6 +188,10 @@ impl Pen<'_, '_> {
         }
         if !film.layers.is_empty() {
             self.lacks(film.span, "a \"gbuffer\"");
+        }
+        if !film.parts.layers.is_empty() {
+            let words: Vec<_> = film.parts.layers.iter().map(PathLayer::word).collect();
+            element.push(Element::parameter("string", "layers", &words.join(",")));
         }
         element
     }

@@ -133,6 +133,10 @@ impl Pen<'_, '_> {
         let exposure = shortest(film.exposure * 100.0, |iso| iso / 100.0 == film.exposure);
         entity.float_unless("iso", exposure, 100.0);
         entity.float_unless("diagonal", film.diagonal, 35.0);
+        if !film.parts.layers.is_empty() {
+            let words: Vec<_> = film.parts.layers.iter().map(|layer| quoted(&layer.word())).collect();
+            entity.param("string", "layers", &format!("[ {} ]", words.join(" ")));
+        }
         self.entity(entity);
     }
 }
