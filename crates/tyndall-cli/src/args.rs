@@ -52,6 +52,7 @@ Examples:
   tyndall render scene.pbrt --time 2m -o fog.exr    as many samples as two minutes give
   tyndall render scene.xml -D spp=64 -D g=0.9       set the scene's $parameters
   tyndall render scene.pbrt --crop 100,50,164,98    a part of the image, the same bits as in the whole
+  tyndall render scene.pbrt --layers single,multiple  what is scattered once and more often, as layers of the EXR
   tyndall render scene.pbrt --json - --quiet        statistics on standard output, nothing else
 
 Ctrl-C ends the render and saves what is done; a second Ctrl-C leaves at once. The image so far is also saved every
@@ -71,6 +72,10 @@ pub(crate) struct RenderOptions {
     /// Show the image in a running tev viewer (its default address is 127.0.0.1:14158)
     #[arg(long, value_name = "HOST:PORT", help_heading = "Output")]
     pub(crate) tev: Option<String>,
+    /// Parts of the light as layers of the EXR file, with their standard errors: emission, direct, indirect;
+    /// unscattered, single, multiple (in media); orders:N for the scattering orders 0 to N and those beyond
+    #[arg(long, value_name = "PART,...", value_delimiter = ',', value_parser = values::parts, help_heading = "Output")]
+    pub(crate) layers: Vec<values::Parts>,
     /// Say nothing but errors
     #[arg(short, long, help_heading = "Output")]
     pub(crate) quiet: bool,

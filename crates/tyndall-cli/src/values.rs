@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use tyndall::film::Crop;
+use tyndall::film::{Crop, Part};
 
 /// `30s`, `2m`, `1.5h`, `500ms`; a bare number is seconds.
 pub(crate) fn duration(word: &str) -> Result<Duration, String> {
@@ -41,6 +41,28 @@ pub(crate) fn resolution(word: &str) -> Result<[u32; 2], String> {
     word.split_once('x')
         .and_then(|(w, h)| Some([side(w)?, side(h)?]))
         .ok_or_else(|| "expected width x height in pixels, from 1x1 to 65536x65536, such as 640x360".into())
+}
+
+/// Parts of the light that go by one word.
+#[derive(Debug, Clone)]
+pub(crate) struct Parts(pub(crate) Vec<Part>);
+
+/// The most orders that are kept apart.
+const MOST_ORDERS: u32 = 64;
+
+/// `direct`, `single`, …, or `orders:N` for the orders 0 to N and all beyond.
+pub(crate) fn parts(word: &str) -> Result<Parts, String> {
+    let single = [Part::Emission, Part::Direct, Part::Indirect, Part::Unscattered, Part::Single, Part::Multiple];
+    if let Some(orders) = word.strip_prefix("orders:") {
+        let last = orders.parse().ok().filter(|last| *last <= MOST_ORDERS);
+        let last =
+            last.ok_or_else(|| format!("expected a number of scatterings from 0 to {MOST_ORDERS}, as in orders:8"))?;
+        return Ok(Parts((0..=last).map(Part::Order).chain([Part::Beyond(last)]).collect()));
+    }
+    let names = || single.map(Part::name).join(", ");
+    let part = single.into_iter().find(|part| part.name() == word);
+    part.map(|part| Parts(vec![part]))
+        .ok_or_else(|| format!("there is no such part of the light: there are {}, orders:N", names()))
 }
 
 /// `NAME=VALUE`.

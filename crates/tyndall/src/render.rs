@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::{
     camera::CameraRay,
     feature::FirstHit,
-    film::{Cell, Crop, Film, Pixel, Recorded},
+    film::{Cell, Crop, Film, Part, Pixel, Recorded},
     integrator::{CameraSample, Integrator},
     sampling::{Sampler, SamplerKind},
     scene::Scene,
@@ -185,25 +185,36 @@ fn render_tile(
         .collect();
     tile.tally.paths += seen.len() as u64;
     let passed: Vec<_> = seen.iter().filter(|seen| seen.weight != 0.0).map(|seen| seen.sample).collect();
-    let mut radiances = integrator.li_many(scene, &passed, &mut tile.tally).into_iter();
+    let kinds = parts_of(scene);
+    let found = integrator.li_many(scene, &passed, &kinds, &mut tile.tally);
+    let mut radiances = found.radiance.into_iter().enumerate();
+    let none = vec![Lanes::ZERO; kinds.len()];
 
     let (layers, per_pixel) = (scene.camera.layers.len(), samples.len());
     for (i, seen) in seen.iter().enumerate() {
         let pixel = &mut tile.pixels[i / per_pixel];
-        let Some(radiance) = (seen.weight != 0.0).then(|| radiances.next()).flatten() else {
+        let Some((ray, radiance)) = (seen.weight != 0.0).then(|| radiances.next()).flatten() else {
             pixel.add([0.0; 3]);
             continue;
         };
-        seen.fill(scene, radiance, &mut tile.cells[i / per_pixel * layers..][..layers]);
         let value = seen.value(scene, radiance);
+        let cells = &mut tile.cells[i / per_pixel * layers..][..layers];
         if radiance.is_finite() && radiance.min_lane() >= 0.0 {
+            seen.fill(scene, radiance, &found.parts[ray * kinds.len()..][..kinds.len()], cells);
             pixel.add(value);
         } else {
+            seen.fill(scene, Lanes::ZERO, &none, cells);
             // Counted and located, and left out of the sums, which one such sample would spoil for good.
             tile.tally.bad_sample(seen.pixel, seen.index, value);
             pixel.add([0.0; 3]);
         }
     }
+}
+
+/// The parts of the light that the film records.
+fn parts_of(scene: &Scene) -> Vec<Part> {
+    let part = |recorded| if let Recorded::Part(part) = recorded { Some(part) } else { None };
+    scene.camera.layers.iter().filter_map(|layer| part(layer.recorded)).collect()
 }
 
 /// A sample of a pixel, as the camera sees it.
@@ -232,12 +243,17 @@ impl Seen {
     }
 
     /// Adds the sample to the layers of its pixel.
-    fn fill(&self, scene: &Scene, radiance: Lanes, cells: &mut [Cell]) {
+    fn fill(&self, scene: &Scene, radiance: Lanes, parts: &[Lanes], cells: &mut [Cell]) {
         let (wavelengths, mut sampler) = (&self.sample.wavelengths, self.sample.sampler);
+        let mut parts = parts.iter();
         let mut first = None;
         for (cell, layer) in cells.iter_mut().zip(&scene.camera.layers) {
             cell.add(match layer.recorded {
                 Recorded::Light(bands) => bands.sample(radiance, wavelengths).map(|v| v * self.weight),
+                Recorded::Part(_) => {
+                    let [r, g, b] = self.value(scene, parts.next().copied().unwrap_or(Lanes::ZERO));
+                    [r, g, b, 0.0]
+                }
                 Recorded::Surface(feature) => {
                     let first = first.get_or_insert_with(|| {
                         let mut places = self.sample.sampler;

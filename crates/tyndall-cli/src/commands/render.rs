@@ -6,7 +6,8 @@ use anyhow::ensure;
 use cpu_time::ProcessTime;
 use rayon::ThreadPool;
 use tyndall::{
-    film::{Crop, Film},
+    film::{Crop, Film, Part},
+    integrator::Counted,
     render::{Rendering, Settings, render},
     sampling::SamplerKind,
     spectrum::ColorMode,
@@ -35,8 +36,9 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     let outputs = Outputs::new(&options.output, &options.input.scene, options.tone.into())?;
     outputs.check()?;
     let pool = pool(options.threads)?;
-    let loaded = pool.install(|| load(&options.input, options.resolution, options.color.map(color_mode)))?;
+    let mut loaded = pool.install(|| load(&options.input, options.resolution, options.color.map(color_mode)))?;
     loaded.warn();
+    loaded.scene.camera.layers.extend(parts(options)?.into_iter().map(Part::layer));
     let settings = settings(options, &loaded)?;
     let job = Job { options, loaded: &loaded, settings, outputs: &outputs, pool, start: Instant::now() };
 
@@ -136,6 +138,22 @@ impl Job<'_> {
         };
         Statistics::new(image, image.metadata.clone().unwrap_or_default(), &rendering.tally, course)
     }
+}
+
+/// The parts of the light that are asked for, each once.
+fn parts(options: &RenderOptions) -> anyhow::Result<Vec<Part>> {
+    let mut parts = Vec::new();
+    for part in options.layers.iter().flat_map(|parts| &parts.0) {
+        if !parts.contains(part) {
+            parts.push(*part);
+        }
+    }
+    ensure!(
+        parts.is_empty() || integrator(options.integrator, None, Counted::default()).tells_parts(),
+        "--layers are for the integrator volpath; {} does not tell parts of the light apart",
+        word(&options.integrator),
+    );
+    Ok(parts)
 }
 
 /// What the command line says, and where it is silent, the scene.

@@ -3,7 +3,7 @@
 //! A layer has four lanes, each with its sum and squared sum over the samples of a pixel; how many there were is known
 //! from the pixel itself. A layer that is defined only where something was hit keeps the weight of hits in its last lane.
 
-use super::{Bands, standard_error};
+use super::{Bands, Part, standard_error};
 use crate::feature::Feature;
 
 /// What a layer records, and how it is called.
@@ -24,6 +24,8 @@ pub enum Recorded {
     Surface(Feature),
     /// The light in bands of wavelengths.
     Light(Bands),
+    /// A part of the light.
+    Part(Part),
 }
 
 /// Over what a layer is averaged.

@@ -7,11 +7,13 @@ pub mod bands;
 pub mod filter;
 pub mod layer;
 pub mod lobed;
+pub mod part;
 
 pub use bands::Bands;
 pub use filter::Filter;
 pub use layer::{Average, Cell, Layer, LayerKind, Recorded};
 pub use lobed::{Kernel, Lobed};
+pub use part::Part;
 
 /// A rectangle of pixels, `min ≤ (x, y) < max`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

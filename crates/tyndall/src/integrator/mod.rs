@@ -11,6 +11,7 @@ pub use analog::Analog;
 pub use volpath::{Counted, Deep, VolPath};
 
 use crate::{
+    film::Part,
     math::Ray,
     sampling::Sampler,
     scene::Scene,
@@ -36,10 +37,25 @@ pub trait Integrator: Debug + Sync {
     /// One estimate of the radiance that arrives along a camera ray, in the lanes of its wavelengths.
     fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes;
 
-    /// Estimates for many camera rays, in their order: the same bits as [`Self::li`] gives for each.
-    fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
-        samples.iter().map(|seen| self.li(scene, seen, tally)).collect()
+    /// Estimates for many camera rays: of the whole the same bits as [`Self::li`] gives for each, and of some parts.
+    fn li_many(&self, scene: &Scene, samples: &[CameraSample], parts: &[Part], tally: &mut Tally) -> Estimates {
+        let radiance = samples.iter().map(|seen| self.li(scene, seen, tally)).collect();
+        Estimates { radiance, parts: vec![Lanes::splat(f32::NAN); samples.len() * parts.len()] }
     }
+
+    /// Whether it can tell parts of the light apart; otherwise they are NaN.
+    fn tells_parts(&self) -> bool {
+        false
+    }
+}
+
+/// Estimates of the radiance along many camera rays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimates {
+    /// The whole of it, in the order of the rays.
+    pub radiance: Vec<Lanes>,
+    /// Part by part of a ray, ray by ray.
+    pub parts: Vec<Lanes>,
 }
 
 /// An estimate by one lane a path, chosen by `u`, that stands for all of them.

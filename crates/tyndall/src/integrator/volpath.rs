@@ -2,12 +2,13 @@
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
 use super::{
-    CameraSample, Integrator,
+    CameraSample, Estimates, Integrator,
     pool::{self, Crew},
     walk::{End, Walker},
 };
 use crate::{
-    light::{Light, Reference},
+    film::Part,
+    light::Reference,
     material::Material,
     medium::{Inside, Skin, Within},
     path::{Attempt, Event, History, Path, Vertex, shadow},
@@ -81,46 +82,94 @@ impl Sink for Lanes {
     }
 }
 
+/// The radiance of a path, the whole and some parts of it.
+struct Light<'a> {
+    radiance: &'a mut Lanes,
+    kinds: &'a [Part],
+    parts: &'a mut [Lanes],
+}
+
+impl Sink for Light<'_> {
+    #[inline]
+    fn add(&mut self, radiance: Lanes, history: &History) {
+        *self.radiance += radiance;
+        for (kind, part) in self.kinds.iter().zip(&mut *self.parts) {
+            if kind.holds(history) {
+                *part += radiance;
+            }
+        }
+    }
+}
+
 impl Integrator for VolPath {
     fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
         let mut radiance = Lanes::ZERO;
+        self.follow(scene, seen, &mut Light { radiance: &mut radiance, kinds: &[], parts: &mut [] }, tally);
+        radiance
+    }
+
+    fn li_many(&self, scene: &Scene, samples: &[CameraSample], kinds: &[Part], tally: &mut Tally) -> Estimates {
+        let found = Estimates {
+            radiance: vec![Lanes::ZERO; samples.len()],
+            parts: vec![Lanes::ZERO; samples.len() * kinds.len()],
+        };
+        let mut following = Following { scene, settings: self, kinds, found };
+        if self.deep == Deep::Together && !scene.media.is_empty() {
+            let paths = samples.iter().map(|seen| Path::new(scene, seen)).enumerate();
+            pool::follow(scene, &mut following, paths, tally);
+        } else {
+            for (sample, seen) in samples.iter().enumerate() {
+                self.follow(scene, seen, &mut following.light(sample), tally);
+            }
+        }
+        following.found
+    }
+
+    fn tells_parts(&self) -> bool {
+        true
+    }
+}
+
+impl VolPath {
+    /// Follows one path by itself.
+    fn follow(&self, scene: &Scene, seen: &CameraSample, light: &mut Light, tally: &mut Tally) {
         let mut path = Path::new(scene, seen);
-        while path.step(scene, self, &mut radiance, tally) == Status::Alive {
+        while path.step(scene, self, light, tally) == Status::Alive {
             if let Some(mut walker) = path.begin_walk(self) {
                 let phase = &scene.medium(walker.medium).phase;
                 let end = walker.alone(phase);
                 path.end_walk(&walker, end, phase, tally);
             }
         }
-        radiance
-    }
-
-    fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
-        if self.deep == Deep::Together && !scene.media.is_empty() {
-            let mut estimates = Estimates { scene, settings: self, radiance: vec![Lanes::ZERO; samples.len()] };
-            let paths = samples.iter().map(|seen| Path::new(scene, seen)).enumerate();
-            pool::follow(scene, &mut estimates, paths, tally);
-            return estimates.radiance;
-        }
-        samples.iter().map(|seen| self.li(scene, seen, tally)).collect()
     }
 }
 
 /// Radiance along many camera rays, by paths that are under way together.
-struct Estimates<'a> {
+struct Following<'a> {
     scene: &'a Scene,
     settings: &'a VolPath,
-    radiance: Vec<Lanes>,
+    kinds: &'a [Part],
+    found: Estimates,
 }
 
-impl Crew for Estimates<'_> {
+impl Following<'_> {
+    /// Where the light of a sample goes.
+    fn light(&mut self, sample: usize) -> Light<'_> {
+        let count = self.kinds.len();
+        let parts = &mut self.found.parts[sample * count..][..count];
+        Light { radiance: &mut self.found.radiance[sample], kinds: self.kinds, parts }
+    }
+}
+
+impl Crew for Following<'_> {
     /// A path with the number of its camera ray.
     type Member = (usize, Path);
 
     fn advance(&mut self, (sample, path): &mut Self::Member, tally: &mut Tally) -> Option<Walker> {
-        let radiance = &mut self.radiance[*sample];
-        while path.step(self.scene, self.settings, radiance, tally) == Status::Alive {
-            if let Some(walker) = path.begin_walk(self.settings) {
+        let (scene, settings) = (self.scene, self.settings);
+        let mut light = self.light(*sample);
+        while path.step(scene, settings, &mut light, tally) == Status::Alive {
+            if let Some(walker) = path.begin_walk(settings) {
                 return Some(walker);
             }
         }
@@ -368,7 +417,7 @@ impl Path {
     ) {
         let [u_choice, u, v] = self.sampler.light(self.history.vertices);
         let Some((id, probability)) = scene.lights.choose(reference, u_choice) else { return };
-        let light: &Light = scene.lights.get(id);
+        let light = scene.lights.get(id);
         let Some(sample) = light.sample(reference, crate::math::Vec2::new(u, v), &self.wavelengths) else { return };
         let (f, scatter_pdf) = vertex.eval(sample.dir);
         if f.is_zero() {
@@ -386,7 +435,8 @@ impl Path {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
             let Attempt { odds, supposed, .. } = *attempt;
             let weight = self.weights.light_sample(supposed * probability * sample.pdf, scatter_pdf, transmittance);
-            sink.add(weight * (supposed / odds) * f * sample.li, &self.history);
+            let history = History { vertices: self.history.vertices.saturating_add(1), ..self.history };
+            sink.add(weight * (supposed / odds) * f * sample.li, &history);
         }
     }
 
