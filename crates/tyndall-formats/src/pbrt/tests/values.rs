@@ -414,7 +414,7 @@ fn a_spectral_film_has_bands_of_wavelengths() {
     assert_eq!(desc.film.layers[0].channels, ["S0.374,688nm", "S0.404,062nm", "S0.433,438nm", "S0.462,812nm"]);
     let bands = |i: usize| match desc.film.layers[i].recorded {
         Recorded::Light(bands) => bands,
-        Recorded::Surface(_) => panic!(),
+        Recorded::Surface(_) | Recorded::Part(_) => panic!(),
     };
     assert_eq!(bands(1), Bands { first: 360.0 + 4.0 * 29.375, width: 29.375, count: 4 });
     assert_eq!(desc.film.color(), ColorMode::Spectral);
