@@ -1,6 +1,7 @@
 //! Estimators of the radiance along a camera ray.
 
 pub mod analog;
+mod following;
 pub mod pool;
 pub mod volpath;
 pub mod walk;
