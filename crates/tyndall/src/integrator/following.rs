@@ -4,7 +4,7 @@ use super::{
     CameraSample, Deep, Estimates, Integrator, VolPath,
     pool::{self, Crew},
     volpath::{Sink, Status},
-    walk::{End, Walker},
+    walk::{Announced, End, Walker},
 };
 use crate::{
     film::Part,
@@ -52,7 +52,7 @@ impl Integrator for VolPath {
             pool::follow(scene, &mut following, paths, tally);
         } else {
             for (sample, seen) in samples.iter().enumerate() {
-                self.follow(scene, seen, &mut following.light(sample), tally);
+                self.follow(scene, seen, &mut following.gain(sample), tally);
             }
         }
         following.found
@@ -70,7 +70,7 @@ impl VolPath {
         while path.step(scene, self, light, tally) == Status::Alive {
             if let Some(mut walker) = path.begin_walk(self) {
                 let phase = &scene.medium(walker.medium).phase;
-                let end = walker.alone(phase);
+                let end = walker.alone(phase, |announced| path.sample_announced(scene, announced, phase, light, tally));
                 path.end_walk(&walker, end, phase, tally);
             }
         }
@@ -87,7 +87,7 @@ struct Following<'a> {
 
 impl Following<'_> {
     /// Where the light of a sample goes.
-    fn light(&mut self, sample: usize) -> Light<'_> {
+    fn gain(&mut self, sample: usize) -> Light<'_> {
         let count = self.kinds.len();
         let parts = &mut self.found.parts[sample * count..][..count];
         Light { radiance: &mut self.found.radiance[sample], kinds: self.kinds, parts }
@@ -100,13 +100,18 @@ impl Crew for Following<'_> {
 
     fn advance(&mut self, (sample, path): &mut Self::Member, tally: &mut Tally) -> Option<Walker> {
         let (scene, settings) = (self.scene, self.settings);
-        let mut light = self.light(*sample);
+        let mut light = self.gain(*sample);
         while path.step(scene, settings, &mut light, tally) == Status::Alive {
             if let Some(walker) = path.begin_walk(settings) {
                 return Some(walker);
             }
         }
         None
+    }
+
+    fn light(&mut self, (sample, path): &Self::Member, announced: &Announced, phase: &Phase, tally: &mut Tally) {
+        let scene = self.scene;
+        path.sample_announced(scene, announced, phase, &mut self.gain(*sample), tally);
     }
 
     fn end_walk(&mut self, (_, path): &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {

@@ -2,10 +2,11 @@
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
 use crate::{
-    light::Reference,
+    integrator::walk::Announced,
     material::Material,
     medium::{Inside, Skin, Within},
-    path::{Attempt, Event, History, Path, Vertex, shadow},
+    phase::Phase,
+    path::{Attempt, Event, History, Path, PathWeights, Vertex, shadow},
     scene::Scene,
     shape::Interaction,
     spectrum::{Lanes, Wavelengths},
@@ -184,6 +185,7 @@ impl Path {
         self.pass_opening(scene, hit);
         self.enter(scene, hit);
         self.ray = hit.spawn(self.ray.dir);
+        self.around.leave(hit.ng, self.ray.dir);
     }
 
     /// Finds out what is at a surface where bodies can overlap, and what is behind it.
@@ -240,7 +242,8 @@ impl Path {
         }
         let reference = vertex.reference();
         if light.made && vertex.can_use_light_samples() {
-            self.sample_light(scene, vertex, &reference, &light, sink, tally);
+            let numbers = self.sampler.light(self.history.vertices);
+            self.sample_light(scene, vertex, &light, numbers, (&self.weights, &self.history), sink, tally);
         }
         if !self.weights.throughput().is_finite() {
             sink.add(self.weights.beta, &self.history); // the film counts and locates it
@@ -269,8 +272,11 @@ impl Path {
         self.history.passes = self.history.passes.saturating_add(u16::from(passes));
         self.last_vertex = reference;
         self.ray = scattered.ray;
-        if let (true, Vertex::Surface { hit, .. }) = (scattered.crossed, vertex) {
-            self.enter(scene, hit);
+        if let Vertex::Surface { hit, .. } = vertex {
+            if scattered.crossed {
+                self.enter(scene, hit);
+            }
+            self.around.leave(hit.ng, self.ray.dir);
         }
         Status::Alive
     }
@@ -301,18 +307,19 @@ impl Path {
     /// Next event estimation: one light, one direction, one shadow ray.
     #[inline]
     fn sample_light(
-        &mut self,
+        &self,
         scene: &Scene,
         vertex: &Vertex,
-        reference: &Reference,
         attempt: &Attempt,
+        [u_choice, u, v]: [f32; 3],
+        (weights, history): (&PathWeights, &History),
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
-        let [u_choice, u, v] = self.sampler.light(self.history.vertices);
-        let Some((id, probability)) = scene.lights.choose(reference, u_choice) else { return };
+        let reference = vertex.reference();
+        let Some((id, probability)) = scene.lights.choose(&reference, u_choice) else { return };
         let light = scene.lights.get(id);
-        let Some(sample) = light.sample(reference, crate::math::Vec2::new(u, v), &self.wavelengths) else { return };
+        let Some(sample) = light.sample(&reference, crate::math::Vec2::new(u, v), &self.wavelengths) else { return };
         let (f, scatter_pdf) = vertex.eval(sample.dir);
         if f.is_zero() {
             return;
@@ -328,10 +335,30 @@ impl Path {
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
             let Attempt { odds, supposed, .. } = *attempt;
-            let weight = self.weights.light_sample(supposed * probability * sample.pdf, scatter_pdf, transmittance);
-            let history = History { vertices: self.history.vertices.saturating_add(1), ..self.history };
+            let weight = weights.light_sample(supposed * probability * sample.pdf, scatter_pdf, transmittance);
+            let history = History { vertices: history.vertices.saturating_add(1), ..*history };
             sink.add(weight * (supposed / odds) * f * sample.li, &history);
         }
+    }
+
+    /// The light sample that a walk deep inside a medium has announced.
+    #[inline]
+    pub fn sample_announced(
+        &self,
+        scene: &Scene,
+        announced: &Announced,
+        phase: &Phase,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
+        let Announced { p, dir, mut rng, .. } = *announced;
+        let Some((attempt, weights)) = self.on_walk(scene, announced, &mut rng) else { return };
+        let mut history = self.history;
+        history.walked(announced.collisions - 1);
+        history.order += 1;
+        let numbers = [rng.next_1d(), rng.next_1d(), rng.next_1d()];
+        let vertex = Vertex::Medium { p, dir, phase };
+        self.sample_light(scene, &vertex, &attempt, numbers, (&weights, &history), sink, tally);
     }
 
     /// The medium, and the bodies, that a ray from `vertex` towards `dir` starts in.

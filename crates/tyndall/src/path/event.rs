@@ -44,7 +44,6 @@ impl Path {
             return collision;
         }
         let flight = match self.unfinished_flight() {
-            Some(flight) if self.is_free(scene, flight) => return self.collide(scene, flight, tally),
             Some(flight) => flight,
             None => self.sample_flight(),
         };

@@ -19,9 +19,10 @@
 //! `σ_s^n exp(−σ_t L)` in each lane, so a walk carries `n` and `L`, and the lanes are settled where it ends
 //! ([`Settled`]): spectral MIS over the lanes costs nothing within.
 //!
-//! A walk ends ([`End`]) where a flight would leave the ball (it is then traced like any other), where light is to be
-//! sampled, or where roulette is due. [`Walker::alone`] follows one walk; [`together`] follows many with SIMD and, since
-//! every path owns its random numbers and no operation is fused, gives the same bits.
+//! A light sample does not hold a walk up: the walk says where ([`Announced`]) and goes on. It ends ([`End`]) where a flight
+//! would leave the ball (it is then traced like any other) or where roulette is due. [`Walker::alone`] follows one walk;
+//! [`together`] follows many with SIMD and, since every path owns its random numbers and no operation is fused, gives the
+//! same bits.
 
 mod step;
 pub(crate) mod together;
@@ -72,6 +73,14 @@ impl Ball {
     #[inline]
     pub fn room(&self, p: Vec3) -> f32 {
         self.radius - (p - self.centre).length()
+    }
+
+    /// How far it is from `p` along `dir` to its surface; 0 outside [length].
+    #[inline]
+    pub fn reach(&self, p: Vec3, dir: Vec3) -> f32 {
+        let from = p - self.centre;
+        let (along, beyond) = (from.dot(dir), self.radius * self.radius - from.length_squared());
+        if beyond > 0.0 { (along * along + beyond).sqrt() - along } else { 0.0 }
     }
 }
 
@@ -135,20 +144,20 @@ impl Depths {
 
     /// The greatest clearance worth asking for [length].
     #[inline]
-    pub fn farthest(&self) -> f32 {
-        FARTHEST / self.sigma_t
+    pub fn farthest(&self, scene: &Scene) -> f32 {
+        (FARTHEST / self.sigma_t).min(scene.deepest(self.id))
     }
 
-    /// Whether a walk is worth to begin with so much room [length].
+    /// Whether a walk is worth to begin with so long a way before it [length].
     #[inline]
-    pub fn is_roomy(&self, room: f32) -> bool {
-        room * self.sigma_t >= ROOM
+    pub fn is_roomy(&self, way: f32) -> bool {
+        way * self.sigma_t >= ROOM
     }
 
     /// The probability of a light sample at a point with this room [length].
     #[inline]
     pub fn odds(&self, room: f32) -> f32 {
-        if self.lit { light_odds(self.sigma_min * room) } else { 0.0 }
+        if self.lit { light_odds(self.sigma_min * room.max(0.0)) } else { 0.0 }
     }
 
     /// The weights of `collisions` after flights of total `length` [length].
@@ -169,6 +178,8 @@ pub struct Walker {
     pub p: Vec3,
     /// Direction of travel from there.
     pub dir: Vec3,
+    /// Direction of travel before.
+    pub came: Vec3,
     /// Random numbers.
     pub rng: Rng,
     /// The ball that holds `p`.
@@ -191,27 +202,58 @@ pub struct Walker {
     pub cos_theta: f32,
 }
 
+/// A light sample at one of the collisions of a walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Announced {
+    /// Where [length].
+    pub p: Vec3,
+    /// Direction of travel before the collision.
+    pub dir: Vec3,
+    /// Collisions of the walk so far, this one included.
+    pub collisions: u32,
+    /// Sum of their flights [length].
+    pub length: f32,
+    /// How likely the announcement was \[1\].
+    pub odds: f32,
+    /// Random numbers for it alone.
+    pub rng: Rng,
+}
+
 /// Why a walk ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// The flight under way may leave the ball.
     Leaves,
-    /// Light is sampled at the collision.
-    Light,
     /// So many collisions want a game of roulette.
     Roulette,
 }
 
 impl Walker {
-    /// Follows a walk to its end.
-    pub fn alone(&mut self, phase: &Phase) -> End {
+    /// Follows a walk to its end, and tells `light` of each light sample on the way.
+    pub fn alone(&mut self, phase: &Phase, mut light: impl FnMut(&Announced)) -> End {
         loop {
             let cosine = |u| phase.sample(u);
             let code =
                 if self.lit { step::collide::<true>(self, cosine) } else { step::collide::<false>(self, cosine) };
+            if step::is_lit(code) {
+                light(&self.announced());
+            }
             if let Some(end) = step::end(code) {
                 return end;
             }
+        }
+    }
+
+    /// A light sample at the last collision.
+    #[inline]
+    fn announced(&self) -> Announced {
+        Announced {
+            p: self.p,
+            dir: self.came,
+            collisions: self.collisions,
+            length: self.length,
+            odds: light_odds(self.sigma_min * self.ball.room(self.p).max(0.0)),
+            rng: self.rng.aside(),
         }
     }
 }
