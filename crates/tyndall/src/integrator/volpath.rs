@@ -3,10 +3,12 @@
 
 use crate::{
     integrator::walk::Announced,
+    light::Reference,
     material::Material,
+    math::Bounds,
     medium::{Inside, Skin, Within},
+    path::{Attempt, Event, History, Path, PathWeights, Vertex, event::Aimed, shadow},
     phase::Phase,
-    path::{Attempt, Event, History, Path, PathWeights, Vertex, shadow},
     scene::Scene,
     shape::Interaction,
     spectrum::{Lanes, Wavelengths},
@@ -80,8 +82,35 @@ impl Path {
     /// Finds the next event and responds to it.
     #[inline]
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
-        let event = self.next_event(scene, tally);
+        let lamp = self.lamp(scene, settings);
+        let (event, aimed) = self.next_event_past(scene, lamp, tally);
+        if let Some(aimed) = aimed {
+            self.sample_aimed(scene, &aimed, sink, tally);
+        }
         self.respond(event, scene, settings, sink, tally)
+    }
+
+    /// A lamp to aim at, where that is worth the while.
+    #[inline]
+    fn lamp(&mut self, scene: &Scene, settings: &VolPath) -> Option<Bounds> {
+        let Inside::Medium { id, coefficients } = &self.inside else { return None };
+        let is_cut = settings.max_depth.is_some_and(|limit| self.history.depth() >= limit);
+        if settings.deep == Deep::Traced || is_cut || !scene.aims(*id, coefficients) {
+            return None;
+        }
+        let from = Reference { p: self.ray.origin, normal: None };
+        let u = if scene.lights.lights.len() > 1 { self.sampler.next_1d() } else { 0.0 };
+        let (lamp, _) = scene.lights.choose(&from, u)?;
+        scene.small_lamp(*id, lamp)
+    }
+
+    /// Light at a collision that was aimed at a lamp.
+    #[inline]
+    fn sample_aimed(&self, scene: &Scene, aimed: &Aimed, sink: &mut impl Sink, tally: &mut Tally) {
+        let Aimed { vertex, weights, numbers } = aimed;
+        let mut history = self.history;
+        history.order += 1;
+        self.sample_light(scene, vertex, &Attempt::CERTAIN, *numbers, (weights, &history), sink, tally);
     }
 
     /// What an event does to the path: a term of the transport equation each.
@@ -335,7 +364,8 @@ impl Path {
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
             let Attempt { odds, supposed, .. } = *attempt;
-            let weight = weights.light_sample(supposed * probability * sample.pdf, scatter_pdf, transmittance);
+            let pdf = probability * sample.pdf;
+            let weight = weights.light_sample([supposed * pdf, pdf], scatter_pdf, transmittance);
             let history = History { vertices: history.vertices.saturating_add(1), ..*history };
             sink.add(weight * (supposed / odds) * f * sample.li, &history);
         }

@@ -149,7 +149,12 @@ impl Path {
     /// A light sample that a walk has announced, and what the path weighs there; `None` if it is not made: the ball of the
     /// walk may be loose, and what is between the bound that it gave and a closer one plays roulette.
     #[inline]
-    pub(crate) fn on_walk(&self, scene: &Scene, announced: &Announced, rng: &mut Rng) -> Option<(Attempt, PathWeights)> {
+    pub(crate) fn on_walk(
+        &self,
+        scene: &Scene,
+        announced: &Announced,
+        rng: &mut Rng,
+    ) -> Option<(Attempt, PathWeights)> {
         let depths = self.around.depths?;
         let supposed = announced.odds;
         let odds = depths.odds(Ball::around(scene, announced.p, depths.farthest(scene)).radius).min(supposed);
@@ -166,7 +171,9 @@ impl Path {
     #[inline]
     pub fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
         let Surroundings { depths: Some(depths), ball, left: Left::Nothing, .. } = self.around else { return None };
-        if !depths.is_roomy(ball.reach(self.ray.origin, self.ray.dir)) || self.sampler.is_stratified(self.history.vertices) {
+        if !depths.is_roomy(ball.reach(self.ray.origin, self.ray.dir))
+            || self.sampler.is_stratified(self.history.vertices)
+        {
             return None;
         }
         let allowed = settings.max_depth.map_or(u32::MAX, |limit| limit.saturating_sub(self.history.depth()));

@@ -91,6 +91,9 @@ pub struct Depths {
     pub id: MediumId,
     /// Of the hero [1/length].
     pub sigma_t: f32,
+    /// The mean of all lanes, by which lengths are judged: what a path does must not depend on which lane is the hero, or
+    /// the weights of multiple importance sampling would not sum to one [1/length].
+    pub sigma_mean: f32,
     /// The least of all lanes [1/length].
     pub sigma_min: f32,
     /// Whether light can be reached.
@@ -118,13 +121,14 @@ pub struct Settled {
 const LOG_OF_NOTHING: f32 = -1e4;
 
 impl Depths {
-    /// Of a medium, unless walks in it are worth nothing: it glows (each collision counts), nothing scatters the hero, or
-    /// no clearance in it reaches far.
+    /// Of a medium, unless walks in it are worth nothing: it glows (each collision counts), nothing scatters, no clearance
+    /// in it reaches far, or collisions are aimed at a lamp.
     pub fn of(scene: &Scene, id: MediumId, coefficients: &Coefficients, hero: usize) -> Option<Self> {
         let Coefficients { sigma_t, sigma_s, source } = *coefficients;
         let extinction = sigma_t.lane(hero);
-        let scatters = sigma_s.lane(hero) > 0.0 && sigma_t.min_lane() > 0.0;
-        if !scatters || !source.is_zero() || scene.deepest(id) * extinction < 2.0 * ROOM {
+        let (sigma_mean, scatters) = (sigma_t.mean(), !sigma_s.is_zero() && sigma_t.min_lane() > 0.0);
+        let is_shallow = scene.deepest(id) * sigma_mean < 2.0 * ROOM;
+        if !scatters || !source.is_zero() || is_shallow || scene.aims(id, coefficients) {
             return None;
         }
         let log = |v: f32| if v > 0.0 { v.ln() } else { LOG_OF_NOTHING };
@@ -133,6 +137,7 @@ impl Depths {
         Some(Self {
             id,
             sigma_t: extinction,
+            sigma_mean,
             sigma_min: sigma_t.min_lane(),
             lit: scene.light_can_reach(Some(id)),
             limit: if limit < MOST_COLLISIONS { (limit as u32).max(1) } else { MOST_COLLISIONS as u32 },
@@ -145,13 +150,13 @@ impl Depths {
     /// The greatest clearance worth asking for [length].
     #[inline]
     pub fn farthest(&self, scene: &Scene) -> f32 {
-        (FARTHEST / self.sigma_t).min(scene.deepest(self.id))
+        (FARTHEST / self.sigma_mean).min(scene.deepest(self.id))
     }
 
     /// Whether a walk is worth to begin with so long a way before it [length].
     #[inline]
     pub fn is_roomy(&self, way: f32) -> bool {
-        way * self.sigma_t >= ROOM
+        way * self.sigma_mean >= ROOM
     }
 
     /// The probability of a light sample at a point with this room [length].
