@@ -6,7 +6,7 @@ use crate::{
     material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Geometry, Hit, Interaction},
+    shape::{Distances, Geometry, Hit, Interaction},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -77,6 +77,8 @@ struct Facts {
     holds_lamp: Vec<bool>,
     /// Where lights are that are no surfaces; one box for all if they are many.
     bare_lights: Vec<Bounds>,
+    /// Distances deep inside media, where a search for them is slow.
+    distances: Option<Distances>,
     /// Bodies with a priority, which may overlap.
     bodies: Vec<Body>,
     /// What the camera is in.
@@ -113,12 +115,14 @@ impl Scene {
             bodies,
             around_camera: Within::default(),
             holds_lamp: Vec::new(),
+            distances: None,
         };
         let mut scene = Self { color, camera, geometry, objects, materials, media, lights, facts };
         let holds_lamp = |medium| {
             (0..).map(LightId).take(scene.lights.lights.len()).any(|lamp| scene.small_lamp(medium, lamp).is_some())
         };
         scene.facts.holds_lamp = (0..).map(MediumId).take(scene.media.len()).map(holds_lamp).collect();
+        scene.facts.distances = distances(&scene);
         scene.facts.around_camera = enclosure::around_camera(&scene);
         scene
     }
@@ -199,7 +203,10 @@ impl Scene {
     /// `cap` [length].
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
         let from_lights = self.facts.bare_lights.iter().map(|bounds| bounds.distance(p));
-        self.geometry.clearance(p, from_lights.fold(cap, f32::min))
+        let cap = from_lights.fold(cap, f32::min);
+        let remembered = self.facts.distances.as_ref();
+        let bound = remembered.and_then(|d| d.bound(p, |centre| self.geometry.clearance(centre, f32::INFINITY)));
+        bound.map_or_else(|| self.geometry.clearance(p, cap), |bound| bound.min(cap))
     }
 
     /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.
@@ -241,6 +248,8 @@ impl Scene {
     }
 }
 
+/// Of so many surfaces the nearest is found quickly.
+const FEW_SURFACES: usize = 1000;
 /// The diagonal of a lamp that counts as small, over the depth of the medium that it is in \[1\].
 const SMALL_LAMP: f32 = 0.2;
 /// The depth of a medium from which on walks serve it better than collisions aimed at its lamps \[mean free paths\].
@@ -297,6 +306,13 @@ fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Obj
         }
     }
     if camera.medium == Some(medium) { Bounds::EVERYTHING } else { extent }
+}
+
+/// A memory of distances over all media that have ends, where there are many surfaces.
+fn distances(scene: &Scene) -> Option<Distances> {
+    let ends = scene.facts.extent.iter().filter(|extent| **extent != Bounds::EVERYTHING);
+    let bodies = ends.fold(Bounds::EMPTY, |all, extent| all.union(*extent));
+    (scene.geometry.census().surfaces() > FEW_SURFACES).then(|| Distances::over(&bodies)).flatten()
 }
 
 fn deepest(extent: &Bounds, geometry: &Geometry) -> f32 {
