@@ -209,6 +209,19 @@ impl Scene {
         bound.map_or_else(|| self.geometry.clearance(p, cap), |bound| bound.min(cap))
     }
 
+    /// A point at `p` or not far from it, with its clearance, for whoever can choose: quickly, where distances are remembered.
+    #[inline]
+    pub fn clearance_near(&self, p: Vec3, cap: f32) -> (Vec3, f32) {
+        let search = |centre| self.geometry.clearance(centre, f32::INFINITY);
+        match self.facts.distances.as_ref().and_then(|d| d.cell(p, search)) {
+            Some((centre, nearest)) => {
+                let from_lights = self.facts.bare_lights.iter().map(|bounds| bounds.distance(centre));
+                (centre, from_lights.fold(nearest, f32::min))
+            }
+            None => (p, self.clearance(p, cap)),
+        }
+    }
+
     /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.
     #[inline]
     pub fn deepest(&self, medium: MediumId) -> f32 {

@@ -110,7 +110,7 @@ impl Path {
         let Aimed { vertex, weights, numbers } = aimed;
         let mut history = self.history;
         history.order += 1;
-        self.sample_light(scene, vertex, &Attempt::CERTAIN, *numbers, (weights, &history), sink, tally);
+        self.sample_light(scene, vertex, (&Attempt::CERTAIN, *numbers), (weights, &history), sink, tally);
     }
 
     /// What an event does to the path: a term of the transport equation each.
@@ -272,7 +272,7 @@ impl Path {
         let reference = vertex.reference();
         if light.made && vertex.can_use_light_samples() {
             let numbers = self.sampler.light(self.history.vertices);
-            self.sample_light(scene, vertex, &light, numbers, (&self.weights, &self.history), sink, tally);
+            self.sample_light(scene, vertex, (&light, numbers), (&self.weights, &self.history), sink, tally);
         }
         if !self.weights.throughput().is_finite() {
             sink.add(self.weights.beta, &self.history); // the film counts and locates it
@@ -339,8 +339,7 @@ impl Path {
         &self,
         scene: &Scene,
         vertex: &Vertex,
-        attempt: &Attempt,
-        [u_choice, u, v]: [f32; 3],
+        (attempt, [u_choice, u, v]): (&Attempt, [f32; 3]),
         (weights, history): (&PathWeights, &History),
         sink: &mut impl Sink,
         tally: &mut Tally,
@@ -388,7 +387,7 @@ impl Path {
         history.order += 1;
         let numbers = [rng.next_1d(), rng.next_1d(), rng.next_1d()];
         let vertex = Vertex::Medium { p, dir, phase };
-        self.sample_light(scene, &vertex, &attempt, numbers, (&weights, &history), sink, tally);
+        self.sample_light(scene, &vertex, (&attempt, numbers), (&weights, &history), sink, tally);
     }
 
     /// The medium, and the bodies, that a ray from `vertex` towards `dir` starts in.

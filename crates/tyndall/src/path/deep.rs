@@ -47,16 +47,16 @@ impl Behind {
     fn touching(&mut self, scene: &Scene, p: Vec3, around: Ball, most: f32) -> Ball {
         let Some(inward) = self.inward else { return around };
         let mut radius = self.touched.unwrap_or(most);
-        for _ in 0..2 {
+        for _ in 0..3 {
             if radius < 2.0 * around.radius {
                 break;
             }
-            let ball = Ball::around(scene, p + inward * (radius - around.radius), radius);
+            let ball = Ball::near(scene, p + inward * (radius - around.radius), radius);
             if ball.room(p) > 0.5 * around.radius {
                 self.touched = Some(radius);
                 return ball;
             }
-            radius *= 0.25;
+            radius *= 0.4;
         }
         self.inward = None;
         around

@@ -85,6 +85,7 @@ impl Rng {
 
     /// Another stream, for a question on the way: whether it is asked cannot be seen in what this one gives.
     #[inline]
+    #[must_use]
     pub fn aside(self) -> Self {
         Self { key: [self.key[0], self.key[1] ^ ASIDE], counter: self.counter }
     }

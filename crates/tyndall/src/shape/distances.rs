@@ -44,6 +44,15 @@ impl Distances {
     /// of the grid and near a surface.
     #[inline]
     pub fn bound(&self, p: Vec3, search: impl FnOnce(Vec3) -> f32) -> Option<f32> {
+        let (centre, nearest) = self.cell(p, search)?;
+        let bound = nearest - (p - centre).length() - gamma(8) * nearest;
+        (bound > self.side).then_some(bound)
+    }
+
+    /// The centre of the cell that `p` is in, and the distance from there to the nearest surface [length]; `None` outside of
+    /// the grid.
+    #[inline]
+    pub fn cell(&self, p: Vec3, search: impl FnOnce(Vec3) -> f32) -> Option<(Vec3, f32)> {
         let place = (p - self.min) / self.side;
         let [x, y, z] = place.to_array();
         let [nx, ny, nz] = self.counts;
@@ -59,7 +68,6 @@ impl Distances {
             nearest = search(centre);
             cell.store(nearest.to_bits(), Ordering::Relaxed);
         }
-        let bound = nearest - (p - centre).length() - gamma(8) * nearest;
-        (bound > self.side).then_some(bound)
+        Some((centre, nearest))
     }
 }

@@ -64,9 +64,20 @@ impl Ball {
     /// to a point within it.
     #[inline]
     pub fn around(scene: &Scene, p: Vec3, cap: f32) -> Self {
-        let clearance = scene.clearance(p, cap);
-        let margin = gamma(16) * (p.abs().max_element() + clearance);
-        Self { centre: p, radius: (clearance - margin).max(0.0) }
+        Self::within(p, scene.clearance(p, cap))
+    }
+
+    /// Around a point of the scene or one near it; no larger than `cap` [length] where that saves work.
+    #[inline]
+    pub fn near(scene: &Scene, p: Vec3, cap: f32) -> Self {
+        let (centre, clearance) = scene.clearance_near(p, cap);
+        Self::within(centre, clearance)
+    }
+
+    #[inline]
+    fn within(centre: Vec3, clearance: f32) -> Self {
+        let margin = gamma(16) * (centre.abs().max_element() + clearance);
+        Self { centre, radius: (clearance - margin).max(0.0) }
     }
 
     /// How far it is from `p` to its surface at least, not above 0 outside [length].
