@@ -7,8 +7,8 @@ use crate::{
     lpe::{Automaton, Names, PathLayer, automaton::BuildError},
     material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
-    medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Geometry, Hit, Interaction},
+    medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
+    shape::{Distances, Geometry, Hit, Interaction},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -77,8 +77,12 @@ struct Facts {
     extent: Vec<Bounds>,
     /// By medium: the greatest clearance in it [length].
     deepest: Vec<f32>,
+    /// By medium: whether a small lamp is in it.
+    holds_lamp: Vec<bool>,
     /// Where lights are that are no surfaces; one box for all if they are many.
     bare_lights: Vec<Bounds>,
+    /// Distances deep inside media, where a search for them is slow.
+    distances: Option<Distances>,
     /// Bodies with a priority, which may overlap.
     bodies: Vec<Body>,
     /// What the camera is in.
@@ -114,8 +118,15 @@ impl Scene {
             bare_lights: bare_lights(&lights),
             bodies,
             around_camera: Within::default(),
+            holds_lamp: Vec::new(),
+            distances: None,
         };
         let mut scene = Self { color, camera, geometry, objects, materials, media, lights, paths: None, facts };
+        let holds_lamp = |medium| {
+            (0..).map(LightId).take(scene.lights.lights.len()).any(|lamp| scene.small_lamp(medium, lamp).is_some())
+        };
+        scene.facts.holds_lamp = (0..).map(MediumId).take(scene.media.len()).map(holds_lamp).collect();
+        scene.facts.distances = distances(&scene);
         scene.facts.around_camera = enclosure::around_camera(&scene);
         scene
     }
@@ -190,8 +201,13 @@ impl Scene {
     /// leave a body without meeting its boundary. A surface as near to the end as rounding can be is therefore reached.
     #[inline]
     pub fn first_surface(&self, ray: &Ray, flight: f32) -> Option<Hit> {
-        let margin = gamma(8) * (ray.origin.abs().max_element() + flight);
-        self.geometry.intersect(ray, if flight.is_finite() { flight + margin } else { flight })
+        self.geometry.intersect(ray, flight + self.rounding(ray, flight))
+    }
+
+    /// How far rounding may carry the end of a flight [length].
+    #[inline]
+    pub fn rounding(&self, ray: &Ray, flight: f32) -> f32 {
+        gamma(8) * (ray.origin.abs().max_element() + flight)
     }
 
     /// Whether `p` can be in a medium at all, which has ends. (At grazing incidence a rounded collision may still lie
@@ -205,13 +221,48 @@ impl Scene {
     /// `cap` [length].
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
         let from_lights = self.facts.bare_lights.iter().map(|bounds| bounds.distance(p));
-        self.geometry.clearance(p, from_lights.fold(cap, f32::min))
+        let cap = from_lights.fold(cap, f32::min);
+        let remembered = self.facts.distances.as_ref();
+        let bound = remembered.and_then(|d| d.bound(p, |centre| self.geometry.clearance(centre, f32::INFINITY)));
+        bound.map_or_else(|| self.geometry.clearance(p, cap), |bound| bound.min(cap))
+    }
+
+    /// A point at `p` or not far from it, with its clearance, for whoever can choose: quickly, where distances are remembered.
+    #[inline]
+    pub fn clearance_near(&self, p: Vec3, cap: f32) -> (Vec3, f32) {
+        let search = |centre| self.geometry.clearance(centre, f32::INFINITY);
+        match self.facts.distances.as_ref().and_then(|d| d.cell(p, search)) {
+            Some((centre, nearest)) => {
+                let from_lights = self.facts.bare_lights.iter().map(|bounds| bounds.distance(centre));
+                (centre, from_lights.fold(nearest, f32::min))
+            }
+            None => (p, self.clearance(p, cap)),
+        }
     }
 
     /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.
     #[inline]
     pub fn deepest(&self, medium: MediumId) -> f32 {
         self.facts.deepest[medium.0 as usize]
+    }
+
+    /// The box around a light, if that is small and in a medium: one that rays in it may pass closely.
+    #[inline]
+    pub fn small_lamp(&self, medium: MediumId, lamp: LightId) -> Option<Bounds> {
+        let bounds = self.lights.get(lamp).bounds()?;
+        let is_small = bounds.extent().length() < SMALL_LAMP * self.deepest(medium);
+        (is_small && overlap(&self.facts.extent[medium.0 as usize], &bounds)).then_some(bounds)
+    }
+
+    /// Whether collisions in a medium are to be aimed at lamps: where a small one is in it and it is thin. The same for
+    /// whatever lane is the hero, as all weights of multiple importance sampling must be.
+    #[inline]
+    pub fn aims(&self, medium: MediumId, coefficients: &Coefficients) -> bool {
+        let Coefficients { sigma_t, sigma_s, .. } = *coefficients;
+        self.facts.holds_lamp[medium.0 as usize]
+            && self.light_can_reach(Some(medium))
+            && sigma_t.mean() * self.deepest(medium) < THIN
+            && !sigma_s.is_zero()
     }
 
     /// Whether shadow rays must walk through surfaces that let light pass.
@@ -227,6 +278,13 @@ impl Scene {
         medium.is_none_or(|id| self.facts.lit[id.0 as usize])
     }
 }
+
+/// Of so many surfaces the nearest is found quickly.
+const FEW_SURFACES: usize = 1000;
+/// The diagonal of a lamp that counts as small, over the depth of the medium that it is in \[1\].
+const SMALL_LAMP: f32 = 0.2;
+/// The depth of a medium from which on walks serve it better than collisions aimed at its lamps \[mean free paths\].
+const THIN: f32 = 8.0;
 
 /// A medium is lit directly if it has an open boundary (one without a material, or with holes), if it fills the space of a
 /// light, or if it reaches as far as we know.
@@ -279,6 +337,13 @@ fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Obj
         }
     }
     if camera.medium == Some(medium) { Bounds::EVERYTHING } else { extent }
+}
+
+/// A memory of distances over all media that have ends, where there are many surfaces.
+fn distances(scene: &Scene) -> Option<Distances> {
+    let ends = scene.facts.extent.iter().filter(|extent| **extent != Bounds::EVERYTHING);
+    let bodies = ends.fold(Bounds::EMPTY, |all, extent| all.union(*extent));
+    (scene.geometry.census().surfaces() > FEW_SURFACES).then(|| Distances::over(&bodies)).flatten()
 }
 
 fn deepest(extent: &Bounds, geometry: &Geometry) -> f32 {

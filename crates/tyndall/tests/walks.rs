@@ -127,6 +127,32 @@ fn no_clearance_reaches_over_a_lamp_without_a_surface() {
     }
 }
 
+/// In a body of many triangles distances are remembered on a grid: what it answers is never above the distance that the tree
+/// finds, and below it by no more than the size of a cell.
+#[test]
+fn remembered_distances_are_bounds() {
+    let mut world = World::seen(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO);
+    world.faceted_ball(1.5, 40, Material::Null, medium([0.0; 3], [100.0; 3], 0.0));
+    let position = Vec3::new(0.3, 0.2, 0.1);
+    world.lights.push(Light::Point(PointLight { position, intensity: common::grey(1.0), luminance: 1.0 }));
+    let scene = world.scene();
+    let cell = 3.0 / 32.0;
+    let mut random = testkit::Stream::new(7);
+    let mut loose = 0;
+    for _ in 0..20_000 {
+        let p = Vec3::from_array([0; 3].map(|_| random.next_f64() as f32 * 3.4 - 1.7));
+        let exact = scene.geometry.clearance(p, 9.0).min(p.distance(position));
+        let found = scene.clearance(p, 9.0);
+        assert!(found <= exact, "{p}: {found} above {exact}");
+        assert!(found >= exact - 1.8 * cell, "{p}: {found} far below {exact}");
+        loose += u32::from(found < exact);
+        let (centre, near) = scene.clearance_near(p, 9.0);
+        assert!((centre - p).length() <= 0.9 * cell && near <= scene.geometry.clearance(centre, 9.0), "{p}");
+        assert!(near <= centre.distance(position), "{p}");
+    }
+    assert!(loose > 5000, "the grid has answered {loose} times");
+}
+
 /// Deep inside a clear ball of 10⁴ free paths hardly a ray is cast.
 #[test]
 fn collisions_deep_inside_cast_no_rays() {

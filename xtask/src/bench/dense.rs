@@ -11,7 +11,14 @@ use crate::peers::{directory, scene_file};
 use crate::shell::output;
 
 /// Scenes, and how many times the efficiency of the better Mitsuba is asked.
-const SCENES: [(&str, f64); 3] = [("b_marble_cube_matched", 20.0), ("c_milk_sphere", 40.0), ("d_fog_box", 3.0)];
+const SCENES: [(&str, f64); 6] = [
+    ("b_marble_cube_matched", 20.0),
+    ("c_milk_sphere", 40.0),
+    ("b4_marble_mesh", 10.0),
+    ("c2_milk_mesh", 10.0),
+    ("d_fog_box", 3.0),
+    ("d2_fog_lamp", 5.0),
+];
 /// What a collision may cost in the whole program [ns].
 const COLLISION: f64 = 8.0;
 

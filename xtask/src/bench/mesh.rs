@@ -33,7 +33,7 @@ Shape \"plymesh\" \"string filename\" \"mesh.ply\"
 /// Measures and prints.
 pub(super) fn run(tyndall: &Tyndall, times: u32) -> Result<()> {
     let directory = root().join("target/bench");
-    let triangles = write_ball(&directory.join("mesh.ply"))?;
+    let triangles = write_ball(&directory.join("mesh.ply"), MERIDIANS)?;
     let scene = directory.join("mesh.pbrt");
     std::fs::write(&scene, SCENE)?;
     let (mut seconds, mut gibibytes) = (Vec::new(), Vec::new());
@@ -68,9 +68,16 @@ fn peak_memory(command: &mut Command) -> Result<f64> {
     Ok(peak)
 }
 
-/// Writes the ball, unless it is there; returns the number of its triangles.
-fn write_ball(path: &Path) -> Result<u32> {
-    let (n, rings) = (MERIDIANS, MERIDIANS / 2 - 1);
+/// The body of the peers' scenes `b4` and `c2`: 100,000 triangles in `target/bench/body.ply`.
+pub(crate) fn write_body() -> Result<()> {
+    let directory = root().join("target/bench");
+    std::fs::create_dir_all(&directory)?;
+    write_ball(&directory.join("body.ply"), 318).map(drop)
+}
+
+/// Writes a ball, unless it is there; returns the number of its triangles.
+fn write_ball(path: &Path, n: u32) -> Result<u32> {
+    let rings = n / 2 - 1;
     let triangles = 2 * n * rings;
     if path.exists() {
         return Ok(triangles);

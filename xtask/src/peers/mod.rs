@@ -58,6 +58,7 @@ pub(crate) fn scene_file(scene: &str) -> PathBuf {
 /// Compares, prints the tables, writes `target/peers/report.json` and `report.md`; fails where pictures disagree.
 pub(crate) fn run(options: &Options) -> Result<()> {
     let mitsuba = Mitsuba::install()?;
+    crate::bench::mesh::write_body()?;
     let tyndall = if options.control { None } else { Some(Tyndall::find()?) };
     let mut failures = Vec::new();
     let mut keep = |name: &str, error: anyhow::Error| {

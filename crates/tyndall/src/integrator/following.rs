@@ -4,7 +4,7 @@ use super::{
     CameraSample, Deep, Integrator, Parts, TakesApart, VolPath,
     pool::{self, Crew},
     volpath::{Sink, Status},
-    walk::{End, Walker},
+    walk::{Announced, End, Walker},
 };
 use crate::{lpe::Automaton, path::Path, phase::Phase, scene::Scene, spectrum::Lanes, tally::Tally};
 
@@ -42,7 +42,8 @@ impl VolPath {
         while path.step(scene, self, sink, tally) == Status::Alive {
             if let Some(mut walker) = path.begin_walk(self) {
                 let phase = &scene.medium(walker.medium).phase;
-                let end = walker.alone(phase);
+                let end =
+                    walker.alone(phase, |announced| path.sample_announced(scene, announced, phase, sink, tally));
                 path.end_walk(&walker, end, phase, sink, tally);
             }
         }
@@ -79,6 +80,10 @@ impl<S: Sink> Crew for Estimates<'_, S> {
             }
         }
         None
+    }
+
+    fn light(&mut self, (sample, path): &Self::Member, announced: &Announced, phase: &Phase, tally: &mut Tally) {
+        path.sample_announced(self.scene, announced, phase, &mut self.sinks[*sample], tally);
     }
 
     fn end_walk(&mut self, member: &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {

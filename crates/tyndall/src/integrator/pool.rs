@@ -4,8 +4,8 @@
 //! of them finds. Who follows them, and what is made of it, is a [`Crew`]: an estimator of radiance, an instrument.
 
 use super::walk::{
-    End, Walker,
-    together::{WIDTH, Walks},
+    Announced, End, Walker,
+    together::{News, WIDTH, Walks},
 };
 use crate::{medium::MediumId, phase::Phase, scene::Scene, tally::Tally};
 
@@ -19,6 +19,9 @@ pub trait Crew {
 
     /// Follows a path until it walks deep inside a medium; `None` at its end.
     fn advance(&mut self, member: &mut Self::Member, tally: &mut Tally) -> Option<Walker>;
+
+    /// Light is to be sampled on its walk.
+    fn light(&mut self, _: &Self::Member, _: &Announced, _: &Phase, _: &mut Tally) {}
 
     /// Its walk is over.
     fn end_walk(&mut self, member: &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally);
@@ -52,9 +55,15 @@ pub fn follow<C: Crew>(scene: &Scene, crew: &mut C, members: impl IntoIterator<I
         }
         let least = if walks.len() < WIDTH { 1 } else { WIDTH };
         let (members, phase) = (&mut pool.members, &scene.medium(walks.medium()).phase);
-        walks.advance(phase, least, |slot, walker, end| {
-            crew.end_walk(&mut members[slot as usize], walker, end, phase, tally);
-            ended.push(slot);
+        walks.advance(phase, least, |slot, news| {
+            let member = &mut members[slot as usize];
+            match news {
+                News::Light(announced) => crew.light(member, announced, phase, tally),
+                News::Ended(walker, end) => {
+                    crew.end_walk(member, walker, end, phase, tally);
+                    ended.push(slot);
+                }
+            }
         });
         for slot in ended.drain(..) {
             pool.advance(slot, crew, tally);

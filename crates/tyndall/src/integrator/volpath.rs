@@ -2,10 +2,13 @@
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
 use crate::{
-    light::{Light, Reference},
+    integrator::walk::Announced,
+    light::Reference,
     material::Material,
+    math::Bounds,
     medium::{Inside, MediumId, Skin, Within},
-    path::{Attempt, Event, History, Path, Source, Turn, Vertex, shadow},
+    path::{Attempt, Event, History, Path, PathWeights, Source, Turn, Vertex, event::Aimed, shadow},
+    phase::Phase,
     scene::Scene,
     shape::Interaction,
     spectrum::{Lanes, Wavelengths},
@@ -83,8 +86,33 @@ impl Path {
     /// Finds the next event and responds to it.
     #[inline]
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
-        let event = self.next_event(scene, tally);
+        let lamp = self.lamp(scene, settings);
+        let (event, aimed) = self.next_event_past(scene, lamp, tally);
+        if let Some(aimed) = aimed {
+            self.sample_aimed(scene, &aimed, sink, tally);
+        }
         self.respond(event, scene, settings, sink, tally)
+    }
+
+    /// A lamp to aim at, where that is worth the while.
+    #[inline]
+    fn lamp(&mut self, scene: &Scene, settings: &VolPath) -> Option<Bounds> {
+        let Inside::Medium { id, coefficients } = &self.inside else { return None };
+        let is_cut = settings.max_depth.is_some_and(|limit| self.history.depth() >= limit);
+        if settings.deep == Deep::Traced || is_cut || !scene.aims(*id, coefficients) {
+            return None;
+        }
+        let from = Reference { p: self.ray.origin, normal: None };
+        let u = if scene.lights.lights.len() > 1 { self.sampler.next_1d() } else { 0.0 };
+        let (lamp, _) = scene.lights.choose(&from, u)?;
+        scene.small_lamp(*id, lamp)
+    }
+
+    /// Light at a collision that was aimed at a lamp.
+    #[inline]
+    fn sample_aimed(&self, scene: &Scene, aimed: &Aimed, sink: &mut impl Sink, tally: &mut Tally) {
+        let Aimed { vertex, weights, numbers } = aimed;
+        self.sample_light(scene, vertex, (&Attempt::CERTAIN, *numbers), (weights, &self.history), sink, tally);
     }
 
     /// What an event does to the path: a term of the transport equation each.
@@ -188,6 +216,7 @@ impl Path {
         self.pass_opening(scene, hit);
         self.enter(scene, hit);
         self.ray = hit.spawn(self.ray.dir);
+        self.around.leave(hit.ng, self.ray.dir);
     }
 
     /// Finds out what is at a surface where bodies can overlap, and what is behind it.
@@ -244,7 +273,8 @@ impl Path {
         }
         let reference = vertex.reference();
         if light.made && vertex.can_use_light_samples() {
-            self.sample_light(scene, vertex, &reference, &light, sink, tally);
+            let numbers = self.sampler.light(self.history.vertices);
+            self.sample_light(scene, vertex, (&light, numbers), (&self.weights, &self.history), sink, tally);
         }
         if !self.weights.throughput().is_finite() {
             sink.add(self.weights.beta, &self.history, None, Source::Fault); // the film counts and locates it
@@ -274,8 +304,11 @@ impl Path {
         self.history.passes = self.history.passes.saturating_add(u16::from(passes));
         self.last_vertex = reference;
         self.ray = scattered.ray;
-        if let (true, Vertex::Surface { hit, .. }) = (scattered.crossed, vertex) {
-            self.enter(scene, hit);
+        if let Vertex::Surface { hit, .. } = vertex {
+            if scattered.crossed {
+                self.enter(scene, hit);
+            }
+            self.around.leave(hit.ng, self.ray.dir);
         }
         Status::Alive
     }
@@ -306,18 +339,18 @@ impl Path {
     /// Next event estimation: one light, one direction, one shadow ray.
     #[inline]
     fn sample_light(
-        &mut self,
+        &self,
         scene: &Scene,
         vertex: &Vertex,
-        reference: &Reference,
-        attempt: &Attempt,
+        (attempt, [u_choice, u, v]): (&Attempt, [f32; 3]),
+        (weights, history): (&PathWeights, &History),
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
-        let [u_choice, u, v] = self.sampler.light(self.history.vertices);
-        let Some((id, probability)) = scene.lights.choose(reference, u_choice) else { return };
-        let light: &Light = scene.lights.get(id);
-        let Some(sample) = light.sample(reference, crate::math::Vec2::new(u, v), &self.wavelengths) else { return };
+        let reference = vertex.reference();
+        let Some((id, probability)) = scene.lights.choose(&reference, u_choice) else { return };
+        let light = scene.lights.get(id);
+        let Some(sample) = light.sample(&reference, crate::math::Vec2::new(u, v), &self.wavelengths) else { return };
         let (f, scatter_pdf) = vertex.eval(sample.dir);
         if f.is_zero() {
             return;
@@ -333,11 +366,32 @@ impl Path {
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
             let Attempt { odds, supposed, .. } = *attempt;
-            let weight = self.weights.light_sample(supposed * probability * sample.pdf, scatter_pdf, transmittance);
+            let pdf = probability * sample.pdf;
+            let weight = weights.light_sample([supposed * pdf, pdf], scatter_pdf, transmittance);
             let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
             let source = if light.is_environment() { Source::Sky(id) } else { Source::Light(id) };
-            sink.add(weight * (supposed / odds) * f * sample.li, &self.history, Some(turn), source);
+            sink.add(weight * (supposed / odds) * f * sample.li, history, Some(turn), source);
         }
+    }
+
+    /// The light sample that a walk deep inside a medium has announced.
+    #[inline]
+    pub fn sample_announced(
+        &self,
+        scene: &Scene,
+        announced: &Announced,
+        phase: &Phase,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
+        let Announced { p, dir, mut rng, .. } = *announced;
+        let Some((attempt, weights)) = self.on_walk(scene, announced, &mut rng) else { return };
+        let (mut history, Some(medium)) = (self.history, self.inside.id()) else { return };
+        history.walked(announced.collisions - 1);
+        sink.turned(&mut history, Turn::Medium(medium), announced.collisions - 1);
+        let numbers = [rng.next_1d(), rng.next_1d(), rng.next_1d()];
+        let vertex = Vertex::Medium { p, dir, medium, phase };
+        self.sample_light(scene, &vertex, (&attempt, numbers), (&weights, &history), sink, tally);
     }
 
     /// The medium, and the bodies, that a ray from `vertex` towards `dir` starts in.

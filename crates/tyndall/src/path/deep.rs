@@ -1,16 +1,17 @@
 //! How a path enters a walk deep inside a medium, and how it comes back. See [`crate::integrator::walk`].
 
-use super::{Event, Path, Turn};
+use super::{Event, Path, PathWeights, Turn};
 use crate::{
     integrator::{
         VolPath,
         volpath::Sink,
-        walk::{Ball, Depths, End, Walker},
+        walk::{Announced, Ball, Depths, End, Walker},
     },
     light::Reference,
     math::{Ray, Vec3},
     medium::Inside,
     phase::Phase,
+    sampling::Rng,
     scene::Scene,
     spectrum::Lanes,
     tally::Tally,
@@ -25,8 +26,42 @@ pub struct Surroundings {
     asked: bool,
     /// No surface and no light is here.
     ball: Ball,
+    /// The surface that the path came from.
+    behind: Behind,
     /// What a walk has left undone.
     left: Left,
+}
+
+/// The surface that a path in a medium came from.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Behind {
+    /// Its normal, on the side of the path.
+    inward: Option<Vec3>,
+    /// The radius of the last ball that touched it [length].
+    touched: Option<f32>,
+}
+
+impl Behind {
+    /// The ball around `p`; or a larger one that holds it and touches the surface behind, if that is even enough and the
+    /// nearest. A walk near the surface leaves such a ball far more rarely.
+    #[inline]
+    fn touching(&mut self, scene: &Scene, p: Vec3, around: Ball, most: f32) -> Ball {
+        let Some(inward) = self.inward else { return around };
+        let mut radius = self.touched.unwrap_or(most);
+        for _ in 0..3 {
+            if radius < 2.0 * around.radius {
+                break;
+            }
+            let ball = Ball::near(scene, p + inward * (radius - around.radius), radius);
+            if ball.room(p) > 0.5 * around.radius {
+                self.touched = Some(radius);
+                return ball;
+            }
+            radius *= 0.4;
+        }
+        self.inward = None;
+        around
+    }
 }
 
 /// What a walk has left undone.
@@ -36,8 +71,8 @@ enum Left {
     Nothing,
     /// A flight whose length is drawn [length].
     Flight(f32),
-    /// A collision, and whether light is to be sampled there.
-    Collision { lit: bool },
+    /// A collision, whose light has been seen to.
+    Collision,
 }
 
 /// Whether light is sampled at a vertex, and how likely that was.
@@ -60,7 +95,15 @@ impl Attempt {
 
 impl Default for Surroundings {
     fn default() -> Self {
-        Self { depths: None, asked: false, ball: Ball::NONE, left: Left::Nothing }
+        Self { depths: None, asked: false, ball: Ball::NONE, behind: Behind::default(), left: Left::Nothing }
+    }
+}
+
+impl Surroundings {
+    /// The path leaves a surface with normal `ng` along `dir`.
+    #[inline]
+    pub(crate) fn leave(&mut self, ng: Vec3, dir: Vec3) {
+        self.behind = Behind { inward: Some(if ng.dot(dir) < 0.0 { -ng } else { ng }), ..self.behind };
     }
 }
 
@@ -94,27 +137,44 @@ impl Path {
     #[inline]
     pub(crate) fn look_around(&mut self, scene: &Scene, p: Vec3) -> Attempt {
         let Some(depths) = self.depths(scene) else { return self.attempt(scene) };
-        let left = std::mem::replace(&mut self.around.left, Left::Nothing);
-        let supposed = match left {
-            Left::Collision { .. } => depths.odds(self.around.ball.room(p).max(0.0)),
-            _ => 1.0,
-        };
-        if self.around.ball.room(p) < 0.5 * self.around.ball.radius || left == Left::Nothing {
-            self.around.ball = Ball::around(scene, p, depths.farthest());
+        if std::mem::replace(&mut self.around.left, Left::Nothing) == Left::Collision {
+            return Attempt { odds: 1.0, supposed: depths.odds(self.around.ball.room(p)), made: false };
         }
-        let odds = depths.odds(self.around.ball.room(p).max(0.0)).min(supposed);
-        let made = match left {
-            Left::Collision { lit: false } => false,
-            _ => odds == supposed || self.sampler.rng.next_positive() * supposed <= odds,
-        };
-        Attempt { odds, supposed, made }
+        let most = depths.farthest(scene);
+        let around = Ball::around(scene, p, most);
+        let odds = depths.odds(around.radius);
+        self.around.ball = self.around.behind.touching(scene, p, around, most);
+        Attempt { odds, supposed: 1.0, made: odds == 1.0 || self.sampler.rng.next_positive() <= odds }
+    }
+
+    /// A light sample that a walk has announced, and what the path weighs there; `None` if it is not made: the ball of the
+    /// walk may be loose, and what is between the bound that it gave and a closer one plays roulette.
+    #[inline]
+    pub(crate) fn on_walk(
+        &self,
+        scene: &Scene,
+        announced: &Announced,
+        rng: &mut Rng,
+    ) -> Option<(Attempt, PathWeights)> {
+        let depths = self.around.depths?;
+        let supposed = announced.odds;
+        let odds = depths.odds(Ball::around(scene, announced.p, depths.farthest(scene)).radius).min(supposed);
+        if odds < supposed && rng.next_positive() * supposed > odds {
+            return None;
+        }
+        let settled = depths.settle(announced.collisions, announced.length);
+        let mut weights = self.weights;
+        weights.walk(settled.beta, settled.density);
+        Some((Attempt { odds, supposed, made: true }, weights))
     }
 
     /// Begins a walk, if there is room for one.
     #[inline]
     pub fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
         let Surroundings { depths: Some(depths), ball, left: Left::Nothing, .. } = self.around else { return None };
-        if !depths.is_roomy(ball.room(self.ray.origin)) || self.sampler.is_stratified(self.history.vertices) {
+        if !depths.is_roomy(ball.reach(self.ray.origin, self.ray.dir))
+            || self.sampler.is_stratified(self.history.vertices)
+        {
             return None;
         }
         let allowed = settings.max_depth.map_or(u32::MAX, |limit| limit.saturating_sub(self.history.depth()));
@@ -122,6 +182,7 @@ impl Path {
             medium: depths.id,
             p: self.ray.origin,
             dir: self.ray.dir,
+            came: self.ray.dir,
             rng: self.sampler.rng,
             ball,
             mean_free_path: 1.0 / depths.sigma_t,
@@ -151,17 +212,17 @@ impl Path {
                 if walker.collisions > 0 {
                     self.history.walked(walker.collisions);
                     sink.turned(&mut self.history, Turn::Medium(depths.id), walker.collisions);
-                    let odds = depths.odds(self.around.ball.room(walker.p).max(0.0));
+                    let odds = depths.odds(self.around.ball.room(walker.p));
                     self.weights.scatter(Lanes::ONE, phase.eval(walker.cos_theta), odds);
                     self.last_vertex = Reference { p: walker.p, normal: None };
                 }
                 Left::Flight(walker.flight)
             }
             // The last collision is an event still to come, which counts itself.
-            End::Light | End::Roulette => {
+            End::Roulette => {
                 self.history.walked(walker.collisions - 1);
                 sink.turned(&mut self.history, Turn::Medium(depths.id), walker.collisions - 1);
-                Left::Collision { lit: end == End::Light }
+                Left::Collision
             }
         };
     }
@@ -170,20 +231,12 @@ impl Path {
     #[inline]
     pub(super) fn unfinished_collision<'s>(&self, scene: &'s Scene) -> Option<Event<'s>> {
         match (self.around.left, self.around.depths) {
-            (Left::Collision { .. }, Some(depths)) => {
+            (Left::Collision, Some(depths)) => {
                 let phase = &scene.medium(depths.id).phase;
                 Some(Event::Scatter { p: self.ray.origin, medium: depths.id, phase, emitted: Lanes::ZERO })
             }
             _ => None,
         }
-    }
-
-    /// Whether a flight that has left the ball of a walk stays in a ball of its own.
-    #[inline]
-    pub(super) fn is_free(&mut self, scene: &Scene, flight: f32) -> bool {
-        let (Some(depths), p) = (self.around.depths, self.ray.origin) else { return false };
-        self.around.ball = Ball::around(scene, p, depths.farthest());
-        flight < self.around.ball.radius
     }
 
     /// The flight that a walk has left under way [length].

@@ -1,12 +1,12 @@
 //! What happens next to a path: free flight first, ray second.
 
-use super::Path;
+use super::{Path, PathWeights, Vertex, aim::Aim};
 use crate::{
-    math::{Vec3, fast},
+    math::{Bounds, Vec3, fast},
     medium::{Inside, MediumId, bodies::Part},
     phase::Phase,
     scene::Scene,
-    shape::Interaction,
+    shape::{Hit, Interaction},
     spectrum::Lanes,
     tally::Tally,
 };
@@ -40,27 +40,69 @@ pub enum Event<'s> {
     },
 }
 
+/// A collision that was aimed at a lamp.
+#[derive(Debug, Clone, Copy)]
+pub struct Aimed<'s> {
+    /// Where, and how it scatters.
+    pub vertex: Vertex<'s>,
+    /// What the path would weigh there.
+    pub weights: PathWeights,
+    /// Random numbers for the light.
+    pub numbers: [f32; 3],
+}
+
 impl Path {
     /// Samples a free flight, looks for a surface before its end, and weighs the path for what it found.
     #[inline]
     pub fn next_event<'s>(&mut self, scene: &'s Scene, tally: &mut Tally) -> Event<'s> {
+        self.next_event_past(scene, None, tally).0
+    }
+
+    /// The same past a lamp, at which another collision is aimed.
+    #[inline]
+    pub fn next_event_past<'s>(
+        &mut self,
+        scene: &'s Scene,
+        lamp: Option<Bounds>,
+        tally: &mut Tally,
+    ) -> (Event<'s>, Option<Aimed<'s>>) {
         if let Some(collision) = self.unfinished_collision(scene) {
-            return collision;
+            return (collision, None);
         }
-        let flight = match self.unfinished_flight() {
-            Some(flight) if self.is_free(scene, flight) => return self.collide(scene, flight, tally),
-            Some(flight) => flight,
-            None => self.sample_flight(),
+        let (flight, lamp) = match self.unfinished_flight() {
+            Some(flight) => (flight, None),
+            None => (self.sample_flight(), lamp),
         };
         tally.rays += 1;
-        match scene.first_surface(&self.ray, flight) {
+        let Some(lamp) = lamp else {
+            let hit = scene.first_surface(&self.ray, flight);
+            return (self.arrive(scene, hit, flight, None, tally), None);
+        };
+        let hit = scene.first_surface(&self.ray, f32::INFINITY);
+        let aim = Aim::new(&self.ray, hit.map_or(f32::INFINITY, |hit| hit.t), &lamp);
+        let aimed = aim.and_then(|aim| self.collide_aimed(scene, &aim));
+        let hit = hit.filter(|hit| hit.t < flight + scene.rounding(&self.ray, flight));
+        (self.arrive(scene, hit, flight, aim, tally), aimed)
+    }
+
+    /// At a surface within the flight, at a collision at its end, or nowhere.
+    #[inline]
+    fn arrive<'s>(
+        &mut self,
+        scene: &'s Scene,
+        hit: Option<Hit>,
+        flight: f32,
+        aim: Option<Aim>,
+        tally: &mut Tally,
+    ) -> Event<'s> {
+        match hit {
             Some(hit) => {
                 if let Some(coefficients) = self.inside.coefficients() {
                     self.weights.pass(coefficients.transmittance(hit.t), self.hero);
                 }
                 Event::Surface(scene.geometry.interaction(&self.ray, &hit))
             }
-            None if flight.is_finite() => self.collide(scene, flight, tally),
+            None if flight.is_finite() => self.collide(scene, flight, aim, tally),
             None => {
                 if let Some(coefficients) = self.inside.coefficients() {
                     self.weights.pass(coefficients.transmittance(f32::INFINITY), self.hero);
@@ -92,8 +134,27 @@ impl Path {
         }
     }
 
+    /// A collision that is aimed at a lamp, to find light and for nothing else: the path goes where its flight ends.
     #[inline]
-    fn collide<'s>(&mut self, scene: &'s Scene, flight: f32, tally: &mut Tally) -> Event<'s> {
+    fn collide_aimed<'s>(&mut self, scene: &'s Scene, aim: &Aim) -> Option<Aimed<'s>> {
+        let Inside::Medium { id, coefficients } = &self.inside else { return None };
+        let [u, numbers @ ..] = match self.history.flights {
+            1 => self.sampler.aim(self.history.vertices),
+            _ => self.sampler.random(),
+        };
+        let distance = aim.sample(u);
+        let (transmittance, p) = (coefficients.transmittance(distance), self.ray.at(distance));
+        if transmittance.is_zero() || !scene.may_contain(*id, p) {
+            return None;
+        }
+        let mut weights = self.weights;
+        weights.collide_aimed(coefficients.sigma_t, coefficients.sigma_s, transmittance, aim.pdf(distance));
+        let vertex = Vertex::Medium { p, dir: self.ray.dir, medium: *id, phase: &scene.medium(*id).phase };
+        Some(Aimed { vertex, weights, numbers })
+    }
+
+    #[inline]
+    fn collide<'s>(&mut self, scene: &'s Scene, flight: f32, aim: Option<Aim>, tally: &mut Tally) -> Event<'s> {
         let (id, coefficients, part) = match &self.inside {
             Inside::Vacuum => return Event::Escape,
             Inside::Medium { id, coefficients } => (*id, coefficients, None),
@@ -120,7 +181,8 @@ impl Path {
         if coefficients.sigma_s.is_zero() {
             return Event::Absorb { p, medium: id, emitted };
         }
-        self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero);
+        let aim = aim.map_or(0.0, |aim| aim.pdf(flight));
+        self.weights.collide(coefficients.sigma_t, coefficients.sigma_s, transmittance, self.hero, aim);
         if let Some(Part { share, probability, .. }) = part {
             self.weights.choose(share, probability, self.hero);
         }

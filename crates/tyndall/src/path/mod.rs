@@ -1,5 +1,6 @@
 //! A path as a value: where it is, what it weighs, what it has been through.
 
+pub mod aim;
 pub mod deep;
 pub mod event;
 pub mod history;

@@ -16,11 +16,13 @@ pub struct PathWeights {
     /// `p_lane / p_hero` for finding the next emitter by light sampling at the last vertex instead, still to be
     /// multiplied by the light's own density; `None` when light sampling could not have found this path.
     pub r_l: Option<Lanes>,
+    /// `p_lane / p_hero` for a collision here that was aimed at a lamp instead.
+    pub r_aim: Lanes,
 }
 
 impl Default for PathWeights {
     fn default() -> Self {
-        Self { beta: Lanes::ONE, r_u: Lanes::ONE, r_l: None }
+        Self { beta: Lanes::ONE, r_u: Lanes::ONE, r_l: None, r_aim: Lanes::ZERO }
     }
 }
 
@@ -35,12 +37,13 @@ impl PathWeights {
         self.beta / density
     }
 
-    /// The weight of a light that was sampled with density `light_pdf` over solid angle and that scattering would have
-    /// found with `scatter_pdf`, through `transmittance`. For a Dirac light scattering finds nothing: pass 0 and 1.
+    /// The weight of a light that was sampled with density `light_pdf` over solid angle (`aim_pdf` where the collision had been
+    /// aimed at a lamp), and that scattering would have found with `scatter_pdf`, through `transmittance`. For a Dirac light scattering finds nothing: pass 0 and 1.
     #[inline]
-    pub fn light_sample(&self, light_pdf: f32, scatter_pdf: f32, transmittance: Lanes) -> Lanes {
+    pub fn light_sample(&self, [light_pdf, aim_pdf]: [f32; 2], scatter_pdf: f32, transmittance: Lanes) -> Lanes {
         // Scattering reaches the light if its free flight does, with probability `transmittance` in each lane.
-        let density = (self.r_u * (transmittance * scatter_pdf + Lanes::splat(light_pdf))).mean();
+        let density =
+            (self.r_u * (transmittance * scatter_pdf + Lanes::splat(light_pdf)) + self.r_aim * aim_pdf).mean();
         self.beta * transmittance / density
     }
 
@@ -55,12 +58,25 @@ impl PathWeights {
         }
     }
 
-    /// The path collided after a distance, with density `sigma_t · transmittance` in each lane, and scatters.
+    /// The path collided after a distance, with density `sigma_t · transmittance` in each lane, and scatters. It might have been
+    /// aimed there, with density `aim` [1/length].
     #[inline]
-    pub fn collide(&mut self, sigma_t: Lanes, sigma_s: Lanes, transmittance: Lanes, hero: usize) {
-        let by_hero = 1.0 / (sigma_t.lane(hero) * transmittance.lane(hero));
-        self.beta *= sigma_s * transmittance * by_hero;
-        self.r_u *= sigma_t * transmittance * by_hero;
+    pub fn collide(&mut self, sigma_t: Lanes, sigma_s: Lanes, transmittance: Lanes, hero: usize, aim: f32) {
+        self.collide_by(sigma_t.lane(hero) * transmittance.lane(hero), sigma_t, sigma_s, transmittance, aim);
+    }
+
+    /// The same where it was aimed there.
+    #[inline]
+    pub fn collide_aimed(&mut self, sigma_t: Lanes, sigma_s: Lanes, transmittance: Lanes, aim: f32) {
+        self.collide_by(aim, sigma_t, sigma_s, transmittance, aim);
+    }
+
+    #[inline]
+    fn collide_by(&mut self, density: f32, sigma_t: Lanes, sigma_s: Lanes, transmittance: Lanes, aim: f32) {
+        let by = 1.0 / density;
+        self.r_aim = self.r_u * (aim * by);
+        self.beta *= sigma_s * transmittance * by;
+        self.r_u *= sigma_t * transmittance * by;
         self.r_l = None;
     }
 
@@ -92,7 +108,8 @@ impl PathWeights {
     #[inline]
     pub fn scatter(&mut self, weight: Lanes, pdf: f32, odds: f32) {
         self.beta *= weight;
-        self.r_l = (odds > 0.0).then(|| self.r_u * (odds / pdf));
+        let aimed = std::mem::replace(&mut self.r_aim, Lanes::ZERO);
+        self.r_l = (odds > 0.0).then(|| (self.r_u * odds + aimed) * (1.0 / pdf));
     }
 
     /// The path took the one direction of a Dirac lobe: no light sample could have.

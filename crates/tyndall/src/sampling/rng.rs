@@ -34,6 +34,8 @@ pub const fn mix64(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// Of half of the key: another stream.
+const ASIDE: u32 = 0x5bd1_e995;
 /// 2³² divided by the golden ratio.
 const WEYL: u32 = 0x9e37_79b9;
 
@@ -79,6 +81,13 @@ impl Rng {
         let block = self.block();
         self.counter = self.counter.wrapping_add(4);
         [number(block, 0), number(block, 1), number(block, 2), number(block, 3)]
+    }
+
+    /// Another stream, for a question on the way: whether it is asked cannot be seen in what this one gives.
+    #[inline]
+    #[must_use]
+    pub fn aside(self) -> Self {
+        Self { key: [self.key[0], self.key[1] ^ ASIDE], counter: self.counter }
     }
 
     /// What the numbers of the block have in common that is under way.

@@ -65,9 +65,9 @@ impl Sampler {
         vertex < Self::STRATIFIED_VERTICES && self.points.is_some()
     }
 
-    /// Written as a loop: closures over arrays are not always inlined.
+    /// From the random stream, each in `[0, 1)`. Written as a loop: closures over arrays are not always inlined.
     #[inline]
-    fn random<const N: usize>(&mut self) -> [f32; N] {
+    pub fn random<const N: usize>(&mut self) -> [f32; N] {
         let mut numbers = [0.0; N];
         for number in &mut numbers {
             *number = self.rng.next_1d();
@@ -108,6 +108,13 @@ impl Sampler {
     #[inline]
     pub fn direction(&mut self, vertex: u32) -> [f32; 3] {
         self.vertex_block(vertex, 2)
+    }
+
+    /// Distance of a collision that is aimed at a lamp on the way to vertex `vertex` (one), choice of a light (one) and of a
+    /// point on it (two).
+    #[inline]
+    pub fn aim(&mut self, vertex: u32) -> [f32; 4] {
+        self.vertex_block(vertex, 3)
     }
 
     /// Survival of roulette: never stratified, for the dimension moves with the path.

@@ -25,6 +25,14 @@ pub struct Census {
     pub bytes: usize,
 }
 
+impl Census {
+    /// All that a ray may meet.
+    pub fn surfaces(&self) -> usize {
+        let Self { triangles, spheres, disks, cylinders, patches, curves, instances, .. } = *self;
+        triangles + spheres + disks + cylinders + patches + curves + instances
+    }
+}
+
 impl Geometry {
     /// Counts the shapes.
     pub fn census(&self) -> Census {

@@ -19,7 +19,7 @@ use tyndall::{
 };
 
 /// A mean of independent samples in the film's red, green and blue, with its standard error.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Measured {
     pub(crate) mean: [f64; 3],
     pub(crate) standard_error: [f64; 3],

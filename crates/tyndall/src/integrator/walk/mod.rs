@@ -19,9 +19,10 @@
 //! `σ_s^n exp(−σ_t L)` in each lane, so a walk carries `n` and `L`, and the lanes are settled where it ends
 //! ([`Settled`]): spectral MIS over the lanes costs nothing within.
 //!
-//! A walk ends ([`End`]) where a flight would leave the ball (it is then traced like any other), where light is to be
-//! sampled, or where roulette is due. [`Walker::alone`] follows one walk; [`together`] follows many with SIMD and, since
-//! every path owns its random numbers and no operation is fused, gives the same bits.
+//! A light sample does not hold a walk up: the walk says where ([`Announced`]) and goes on. It ends ([`End`]) where a flight
+//! would leave the ball (it is then traced like any other) or where roulette is due. [`Walker::alone`] follows one walk;
+//! [`together`] follows many with SIMD and, since every path owns its random numbers and no operation is fused, gives the
+//! same bits.
 
 mod step;
 pub(crate) mod together;
@@ -63,15 +64,34 @@ impl Ball {
     /// to a point within it.
     #[inline]
     pub fn around(scene: &Scene, p: Vec3, cap: f32) -> Self {
-        let clearance = scene.clearance(p, cap);
-        let margin = gamma(16) * (p.abs().max_element() + clearance);
-        Self { centre: p, radius: (clearance - margin).max(0.0) }
+        Self::within(p, scene.clearance(p, cap))
+    }
+
+    /// Around a point of the scene or one near it; no larger than `cap` [length] where that saves work.
+    #[inline]
+    pub fn near(scene: &Scene, p: Vec3, cap: f32) -> Self {
+        let (centre, clearance) = scene.clearance_near(p, cap);
+        Self::within(centre, clearance)
+    }
+
+    #[inline]
+    fn within(centre: Vec3, clearance: f32) -> Self {
+        let margin = gamma(16) * (centre.abs().max_element() + clearance);
+        Self { centre, radius: (clearance - margin).max(0.0) }
     }
 
     /// How far it is from `p` to its surface at least, not above 0 outside [length].
     #[inline]
     pub fn room(&self, p: Vec3) -> f32 {
         self.radius - (p - self.centre).length()
+    }
+
+    /// How far it is from `p` along `dir` to its surface; 0 outside [length].
+    #[inline]
+    pub fn reach(&self, p: Vec3, dir: Vec3) -> f32 {
+        let from = p - self.centre;
+        let (along, beyond) = (from.dot(dir), self.radius * self.radius - from.length_squared());
+        if beyond > 0.0 { (along * along + beyond).sqrt() - along } else { 0.0 }
     }
 }
 
@@ -82,6 +102,9 @@ pub struct Depths {
     pub id: MediumId,
     /// Of the hero [1/length].
     pub sigma_t: f32,
+    /// The mean of all lanes, by which lengths are judged: what a path does must not depend on which lane is the hero, or
+    /// the weights of multiple importance sampling would not sum to one [1/length].
+    pub sigma_mean: f32,
     /// The least of all lanes [1/length].
     pub sigma_min: f32,
     /// Whether light can be reached.
@@ -109,13 +132,14 @@ pub struct Settled {
 const LOG_OF_NOTHING: f32 = -1e4;
 
 impl Depths {
-    /// Of a medium, unless walks in it are worth nothing: it glows (each collision counts), nothing scatters the hero, or
-    /// no clearance in it reaches far.
+    /// Of a medium, unless walks in it are worth nothing: it glows (each collision counts), nothing scatters, no clearance
+    /// in it reaches far, or collisions are aimed at a lamp.
     pub fn of(scene: &Scene, id: MediumId, coefficients: &Coefficients, hero: usize) -> Option<Self> {
         let Coefficients { sigma_t, sigma_s, source } = *coefficients;
         let extinction = sigma_t.lane(hero);
-        let scatters = sigma_s.lane(hero) > 0.0 && sigma_t.min_lane() > 0.0;
-        if !scatters || !source.is_zero() || scene.deepest(id) * extinction < 2.0 * ROOM {
+        let (sigma_mean, scatters) = (sigma_t.mean(), !sigma_s.is_zero() && sigma_t.min_lane() > 0.0);
+        let is_shallow = scene.deepest(id) * sigma_mean < 2.0 * ROOM;
+        if !scatters || !source.is_zero() || is_shallow || scene.aims(id, coefficients) {
             return None;
         }
         let log = |v: f32| if v > 0.0 { v.ln() } else { LOG_OF_NOTHING };
@@ -124,6 +148,7 @@ impl Depths {
         Some(Self {
             id,
             sigma_t: extinction,
+            sigma_mean,
             sigma_min: sigma_t.min_lane(),
             lit: scene.light_can_reach(Some(id)),
             limit: if limit < MOST_COLLISIONS { (limit as u32).max(1) } else { MOST_COLLISIONS as u32 },
@@ -135,20 +160,20 @@ impl Depths {
 
     /// The greatest clearance worth asking for [length].
     #[inline]
-    pub fn farthest(&self) -> f32 {
-        FARTHEST / self.sigma_t
+    pub fn farthest(&self, scene: &Scene) -> f32 {
+        (FARTHEST / self.sigma_mean).min(scene.deepest(self.id))
     }
 
-    /// Whether a walk is worth to begin with so much room [length].
+    /// Whether a walk is worth to begin with so long a way before it [length].
     #[inline]
-    pub fn is_roomy(&self, room: f32) -> bool {
-        room * self.sigma_t >= ROOM
+    pub fn is_roomy(&self, way: f32) -> bool {
+        way * self.sigma_mean >= ROOM
     }
 
     /// The probability of a light sample at a point with this room [length].
     #[inline]
     pub fn odds(&self, room: f32) -> f32 {
-        if self.lit { light_odds(self.sigma_min * room) } else { 0.0 }
+        if self.lit { light_odds(self.sigma_min * room.max(0.0)) } else { 0.0 }
     }
 
     /// The weights of `collisions` after flights of total `length` [length].
@@ -169,6 +194,8 @@ pub struct Walker {
     pub p: Vec3,
     /// Direction of travel from there.
     pub dir: Vec3,
+    /// Direction of travel before.
+    pub came: Vec3,
     /// Random numbers.
     pub rng: Rng,
     /// The ball that holds `p`.
@@ -191,27 +218,58 @@ pub struct Walker {
     pub cos_theta: f32,
 }
 
+/// A light sample at one of the collisions of a walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Announced {
+    /// Where [length].
+    pub p: Vec3,
+    /// Direction of travel before the collision.
+    pub dir: Vec3,
+    /// Collisions of the walk so far, this one included.
+    pub collisions: u32,
+    /// Sum of their flights [length].
+    pub length: f32,
+    /// How likely the announcement was \[1\].
+    pub odds: f32,
+    /// Random numbers for it alone.
+    pub rng: Rng,
+}
+
 /// Why a walk ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// The flight under way may leave the ball.
     Leaves,
-    /// Light is sampled at the collision.
-    Light,
     /// So many collisions want a game of roulette.
     Roulette,
 }
 
 impl Walker {
-    /// Follows a walk to its end.
-    pub fn alone(&mut self, phase: &Phase) -> End {
+    /// Follows a walk to its end, and tells `light` of each light sample on the way.
+    pub fn alone(&mut self, phase: &Phase, mut light: impl FnMut(&Announced)) -> End {
         loop {
             let cosine = |u| phase.sample(u);
             let code =
                 if self.lit { step::collide::<true>(self, cosine) } else { step::collide::<false>(self, cosine) };
+            if step::is_lit(code) {
+                light(&self.announced());
+            }
             if let Some(end) = step::end(code) {
                 return end;
             }
+        }
+    }
+
+    /// A light sample at the last collision.
+    #[inline]
+    fn announced(&self) -> Announced {
+        Announced {
+            p: self.p,
+            dir: self.came,
+            collisions: self.collisions,
+            length: self.length,
+            odds: light_odds(self.sigma_min * self.ball.room(self.p).max(0.0)),
+            rng: self.rng.aside(),
         }
     }
 }

@@ -13,23 +13,29 @@ pub(super) fn light_odds(tau: f32) -> f32 {
     fast::exp(-tau).min(1.0)
 }
 
+/// What [`collide`] says when there is nothing to say.
 pub(super) const GOES_ON: u32 = 0;
 const LEAVES: u32 = 1;
-const LIGHT: u32 = 2;
-const ROULETTE: u32 = 3;
+const ROULETTE: u32 = 2;
+const LIGHT: u32 = 4;
 
-/// What [`collide`] has said.
+/// Why [`collide`] has said that the walk ends.
 #[inline(always)]
 pub(super) fn end(code: u32) -> Option<End> {
-    match code {
+    match code & !LIGHT {
         LEAVES => Some(End::Leaves),
-        LIGHT => Some(End::Light),
         ROULETTE => Some(End::Roulette),
         _ => None,
     }
 }
 
-/// Flies and collides, and turns if the walk goes on.
+/// Whether [`collide`] has announced a light sample.
+#[inline(always)]
+pub(super) fn is_lit(code: u32) -> bool {
+    code & LIGHT != 0
+}
+
+/// Flies and collides, announces a light sample or not, and turns if the walk goes on.
 ///
 /// Where the flight leaves the ball, nothing but [`Walker::flight`] and the random numbers change; where the walk ends at
 /// a collision, the direction is still that of the flight that led there. `LIT` says whether light can be reached.
@@ -45,21 +51,21 @@ pub(super) fn collide<const LIT: bool>(w: &mut Walker, cosine: impl Fn(f32) -> f
     let cos_theta = cosine(unit(u_cosine));
     let dir = deflect(w.dir, cos_theta, unit(u_azimuth));
 
-    let goes_on = stays && !is_lit && !is_due;
+    let goes_on = stays && !is_due;
+    w.came = w.dir;
     w.p = select(stays, p, w.p);
     w.length += if stays { w.flight } else { 0.0 };
     w.collisions += u32::from(stays);
     w.dir = select(goes_on, dir, w.dir);
     w.cos_theta = if goes_on { cos_theta } else { w.cos_theta };
-    if goes_on {
+    let end = if goes_on {
         GOES_ON
-    } else if !stays {
-        LEAVES
-    } else if is_lit {
-        LIGHT
-    } else {
+    } else if stays {
         ROULETTE
-    }
+    } else {
+        LEAVES
+    };
+    if stays && is_lit { end | LIGHT } else { end }
 }
 
 #[inline(always)]

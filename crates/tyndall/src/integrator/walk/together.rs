@@ -3,7 +3,7 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::{Ball, End, Walker, step};
+use super::{Announced, Ball, End, Walker, step};
 use crate::{math::Vec3, medium::MediumId, phase::Phase, sampling::Rng};
 
 /// Lanes: what the widest instruction set does at once.
@@ -11,13 +11,22 @@ pub(crate) const WIDTH: usize = 16;
 
 /// Advances walks with one model of phase functions.
 macro_rules! advance {
-    ($walks:expr, $level:expr, $model:expr, $least:expr, $ended:expr) => {
+    ($walks:expr, $level:expr, $model:expr, $least:expr, $hear:expr) => {
         if $walks.lit {
-            dispatch!($level, simd => $walks.run::<_, true>(simd, |u| $model.sample(u), $least, &mut $ended))
+            dispatch!($level, simd => $walks.run::<_, true>(simd, |u| $model.sample(u), $least, &mut $hear))
         } else {
-            dispatch!($level, simd => $walks.run::<_, false>(simd, |u| $model.sample(u), $least, &mut $ended))
+            dispatch!($level, simd => $walks.run::<_, false>(simd, |u| $model.sample(u), $least, &mut $hear))
         }
     };
+}
+
+/// What walks tell on the way.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum News<'a> {
+    /// Light is to be sampled.
+    Light(&'a Announced),
+    /// The walk is over.
+    Ended(&'a Walker, End),
 }
 
 /// Walks under way in one medium, each with the number of its path.
@@ -46,15 +55,15 @@ impl Walks {
         self.waiting.push((path, walker));
     }
 
-    /// Walks until fewer than `least` walks are under way, and tells `ended` of each that ends.
-    pub(crate) fn advance(&mut self, phase: &Phase, least: usize, mut ended: impl FnMut(u32, &Walker, End)) {
+    /// Walks until fewer than `least` walks are under way, and tells `hear` what becomes of each.
+    pub(crate) fn advance(&mut self, phase: &Phase, least: usize, mut hear: impl FnMut(u32, News)) {
         let level = self.level;
         match phase {
-            Phase::Isotropic(model) => advance!(self, level, model, least, ended),
-            Phase::HenyeyGreenstein(model) => advance!(self, level, model, least, ended),
-            Phase::Rayleigh(model) => advance!(self, level, model, least, ended),
-            Phase::Tabulated(model) => advance!(self, level, model, least, ended),
-            Phase::Blend(model) => advance!(self, level, model, least, ended),
+            Phase::Isotropic(model) => advance!(self, level, model, least, hear),
+            Phase::HenyeyGreenstein(model) => advance!(self, level, model, least, hear),
+            Phase::Rayleigh(model) => advance!(self, level, model, least, hear),
+            Phase::Tabulated(model) => advance!(self, level, model, least, hear),
+            Phase::Blend(model) => advance!(self, level, model, least, hear),
         }
     }
 
@@ -64,22 +73,33 @@ impl Walks {
         simd: S,
         cosine: impl Fn(f32) -> f32 + Copy,
         least: usize,
-        ended: &mut impl FnMut(u32, &Walker, End),
+        hear: &mut impl FnMut(u32, News),
     ) {
         let mut lanes = Lanes::default();
         let mut under_way = (0..WIDTH).filter(|&lane| self.fill(&mut lanes, lane)).count();
         while under_way > 0 && under_way + self.waiting.len() >= least {
             let codes = simd.vectorize(
                 #[inline(always)]
-                || lanes.collide::<LIT>(cosine),
+                || {
+                    loop {
+                        let codes = lanes.collide::<LIT>(cosine);
+                        if codes.iter().fold(0, |any, code| any | code) != step::GOES_ON {
+                            return codes;
+                        }
+                    }
+                },
             );
-            if codes.iter().fold(0, |any, code| any | code) == step::GOES_ON {
-                continue;
-            }
             for (lane, code) in codes.into_iter().enumerate() {
-                let (Some(end), path) = (step::end(code), lanes.path[lane]) else { continue };
-                if path != NOBODY {
-                    ended(path, &lanes.get(lane, self.medium, LIT), end);
+                let path = lanes.path[lane];
+                if code == step::GOES_ON || path == NOBODY {
+                    continue;
+                }
+                let walker = lanes.get(lane, self.medium, LIT);
+                if step::is_lit(code) {
+                    hear(path, News::Light(&walker.announced()));
+                }
+                if let Some(end) = step::end(code) {
+                    hear(path, News::Ended(&walker, end));
                     under_way -= usize::from(!self.fill(&mut lanes, lane));
                 }
             }
@@ -112,6 +132,7 @@ struct Lanes {
     path: [u32; WIDTH],
     p: [[f32; WIDTH]; 3],
     dir: [[f32; WIDTH]; 3],
+    came: [[f32; WIDTH]; 3],
     centre: [[f32; WIDTH]; 3],
     radius: [f32; WIDTH],
     mean_free_path: [f32; WIDTH],
@@ -144,6 +165,7 @@ impl Lanes {
             medium,
             p: vector(&self.p),
             dir: vector(&self.dir),
+            came: vector(&self.came),
             rng: Rng { key: [self.key[0][i], self.key[1][i]], counter: self.counter[i] },
             ball: Ball { centre: vector(&self.centre), radius: self.radius[i] },
             mean_free_path: self.mean_free_path[i],
@@ -162,6 +184,7 @@ impl Lanes {
         let put = |to: &mut [[f32; WIDTH]; 3], v: Vec3| (to[0][i], to[1][i], to[2][i]) = (v.x, v.y, v.z);
         put(&mut self.p, walker.p);
         put(&mut self.dir, walker.dir);
+        put(&mut self.came, walker.came);
         put(&mut self.centre, walker.ball.centre);
         self.radius[i] = walker.ball.radius;
         self.mean_free_path[i] = walker.mean_free_path;
@@ -194,6 +217,7 @@ mod tests {
             medium,
             p: Vec3::new(1.0, 2.0, 3.0),
             dir: if number.is_multiple_of(2) { dir } else { Vec3::Z },
+            came: dir,
             rng: Rng::for_sample((number, 0), 0, 1),
             ball: Ball { centre: Vec3::new(1.0, 2.0, 3.0), radius: 2.0 + number as f32 * 0.1 },
             mean_free_path: 0.3,
@@ -223,14 +247,19 @@ mod tests {
             for (lit, level) in [true, false].into_iter().flat_map(|lit| levels().map(move |level| (lit, level))) {
                 let mut walks = Walks { level, medium, lit, waiting: Vec::new() };
                 (0..100).for_each(|number| walks.push(number, walker(number, medium, lit)));
-                let mut ends = 0;
-                walks.advance(phase, 1, |number, together, end| {
-                    let mut alone = walker(number, medium, lit);
-                    assert_eq!(alone.alone(phase), end, "{phase:?} {number}");
-                    assert_eq!(alone, *together, "{phase:?} {number}");
-                    ends += 1;
+                let (mut ends, mut heard) = (0, vec![Vec::new(); 100]);
+                walks.advance(phase, 1, |number, news| match news {
+                    News::Light(announced) => heard[number as usize].push(*announced),
+                    News::Ended(together, end) => {
+                        let (mut alone, mut announced) = (walker(number, medium, lit), Vec::new());
+                        assert_eq!(alone.alone(phase, |a| announced.push(*a)), end, "{phase:?} {number}");
+                        assert_eq!(alone, *together, "{phase:?} {number}");
+                        assert_eq!(announced, heard[number as usize], "{phase:?} {number}");
+                        ends += 1;
+                    }
                 });
                 assert_eq!((ends, walks.len()), (100, 0));
+                assert_eq!(heard.concat().is_empty(), !lit);
             }
         }
     }
