@@ -266,7 +266,8 @@ fn a_body_with_normals_against_its_winding_is_not_turned_inside_out() {
 fn an_environment_in_the_other_language_lights_a_ball_alike() {
     let dir = scratch("sky");
     let picture = |name: &str, width: usize, height: usize| {
-        let value = |i: usize| [1.0 + (i * 7 % 5) as f32, (i * 3 % 7) as f32, if i % 11 == 0 { 30.0 } else { 0.5 }];
+        let value =
+            |i: usize| [1.0 + (i * 7 % 5) as f32, (i * 3 % 7) as f32, if i.is_multiple_of(11) { 30.0 } else { 0.5 }];
         let bytes: Vec<u8> = (0..width * height).flat_map(value).flat_map(f32::to_le_bytes).collect();
         let header = format!("PF\n{width} {height}\n-1.0\n").into_bytes();
         std::fs::write(dir.join(name), [header, bytes].concat()).unwrap();

@@ -130,7 +130,8 @@ mod tests {
 
     /// Noise, three times as bright in the lower half.
     fn picture(width: u32, height: u32) -> Image {
-        let noise = |i: u32| [1.0 + (i * 7 % 5) as f32, (i * 3 % 7) as f32, if i % 11 == 0 { 30.0 } else { 0.5 }];
+        let noise =
+            |i: u32| [1.0 + (i * 7 % 5) as f32, (i * 3 % 7) as f32, if i.is_multiple_of(11) { 30.0 } else { 0.5 }];
         let value = |i: u32| noise(i).map(|v| v * (1 + 2 * (2 * i / (width * height))) as f32);
         Image { width, height, pixels: (0..width * height).map(value).collect() }
     }
