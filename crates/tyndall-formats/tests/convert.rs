@@ -304,7 +304,7 @@ fn an_environment_in_the_other_language_lights_a_ball_alike() {
         let of = |film: &tyndall::film::Film, channel: usize| -> Vec<(f64, f64)> {
             let pixel = |(x, y)| film.pixel(x, y).unwrap();
             let value = |p: &tyndall::film::Pixel| (p.mean()[channel].into(), p.standard_error()[channel].into());
-            pixels().map(pixel).map(|p| value(&p)).collect()
+            pixels().map(pixel).map(value).collect()
         };
         for channel in 0..3 {
             let pairs: Vec<_> = of(&old, channel).into_iter().zip(of(&new, channel)).collect();
