@@ -7,6 +7,7 @@ use tyndall_formats::{
     desc::{PartsDesc, SceneDesc},
     error::{Diagnostics, Unsupported},
     film::hash,
+    missing::{self, Missing},
     source::SourceMap,
 };
 
@@ -36,9 +37,22 @@ pub(crate) fn load(
     color: Option<ColorMode>,
     layers: Option<&LayerList>,
 ) -> anyhow::Result<Loaded> {
+    let missing = if input.lenient { Missing::All } else { Missing::Unused };
+    load_without(missing, input, resolution, color, layers)
+}
+
+/// The same, with grey for some of the pictures that are missing.
+pub(crate) fn load_without(
+    missing: Missing,
+    input: &SceneOptions,
+    resolution: Option<[u32; 2]>,
+    color: Option<ColorMode>,
+    layers: Option<&LayerList>,
+) -> anyhow::Result<Loaded> {
     let start = Instant::now();
     let unsupported = if input.lenient { Unsupported::Warn } else { Unsupported::Refuse };
     let (mut desc, sources) = tyndall_formats::load(&input.scene, &input.define, unsupported)?;
+    missing::replace(&mut desc, missing);
     if let Some([width, height]) = resolution {
         resize(&mut desc, width, height);
     }

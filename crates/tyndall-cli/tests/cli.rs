@@ -342,3 +342,41 @@ fn a_scene_is_never_written_over_itself() {
     assert!(err(&refused).contains("is part of the scene that is read"), "{}", err(&refused));
     assert_eq!(fs::read(desk.0.join("ball.pbrt")).unwrap(), before);
 }
+
+#[test]
+fn a_scene_with_missing_pictures_is_told_about_and_rendered_without_what_it_does_not_need() {
+    let desk = Desk::with_ball("missing");
+    let scene = |texture: &str| {
+        let bark = "Texture \"bark\" \"spectrum\" \"imagemap\" \"string filename\" \"no-such.png\"";
+        let text = SCENE.replace("WorldBegin", &format!("WorldBegin\n{bark}\n{texture}"));
+        fs::write(desk.0.join("bark.pbrt"), text).unwrap();
+    };
+    scene("");
+    let rendered = desk.tyndall("render bark.pbrt --spp 1 -o bark.exr");
+    assert!(rendered.status.success(), "{}", err(&rendered));
+    assert!(err(&rendered).contains("\"bark\" is missing"), "{}", err(&rendered));
+    scene("Material \"diffuse\" \"texture reflectance\" \"bark\" Shape \"sphere\"");
+    assert_eq!(desk.tyndall("render bark.pbrt --spp 1 -o bark.exr").status.code(), Some(2));
+    assert!(desk.tyndall("render bark.pbrt --lenient --spp 1 -o bark.exr").status.success());
+    let told = desk.tyndall("info bark.pbrt");
+    assert!(told.status.success() && err(&told).contains("\"bark\" is missing"), "{}", err(&told));
+}
+
+#[test]
+fn what_lies_beside_a_converted_scene_replaces_no_file_of_others() {
+    let desk = Desk::with_ball("beside");
+    let triangle = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2]";
+    fs::write(desk.0.join("ball.pbrt"), format!("{SCENE}\n{triangle}\n")).unwrap();
+    let mesh = desk.0.join("there-mesh.ply");
+    fs::write(&mesh, "mine").unwrap();
+    let refused = desk.tyndall("convert ball.pbrt there.xml");
+    assert_eq!(refused.status.code(), Some(2), "{}", err(&refused));
+    assert!(err(&refused).contains("there-mesh.ply is there already"), "{}", err(&refused));
+    assert!(fs::read(&mesh).unwrap() == b"mine" && !desk.0.join("there.xml").exists());
+    fs::remove_file(&mesh).unwrap();
+    // What an earlier call left is replaced.
+    assert!(desk.tyndall("convert ball.pbrt there.xml").status.success());
+    fs::write(desk.0.join("ball.pbrt"), format!("{SCENE}\n{}\n", triangle.replace("0 1 0]", "0 2 0]"))).unwrap();
+    let again = desk.tyndall("convert ball.pbrt there.xml");
+    assert!(again.status.success(), "{}", err(&again));
+}

@@ -2,6 +2,7 @@
 //!
 //! | warning | told from |
 //! |---|---|
+//! | a picture of a texture is missing | its file is not there ([`crate::missing`]) |
 //! | a definition is not used | its name occurs nowhere else |
 //! | a body is a thousand mean free paths across, or a thousandth of one | its box and its medium's `σ_t` |
 //! | a surface that bounds a medium or a body has edges | the edges of its faces |
@@ -244,7 +245,6 @@ mod tests {
         assert_eq!(ball("10"), "");
     }
 
-    /// Two triangles have six edges, of which they share one; a disk is all edge; a sphere has none.
     #[test]
     fn a_body_that_is_inside_out_is_told() {
         let told = warned(&format!("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" ReverseOrientation {BALL}"));
@@ -252,6 +252,7 @@ mod tests {
         assert!(!warned(&format!("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" {BALL}")).contains("normals"));
     }
 
+    /// Two triangles have six edges, of which they share one; a disk is all edge; a sphere has none.
     #[test]
     fn an_open_surface_with_a_medium_behind_it_is_told() {
         let shape = |words: &str| {

@@ -16,6 +16,7 @@ pub mod image;
 pub mod inspect;
 pub mod measured;
 pub mod mesh;
+pub mod missing;
 pub mod mitsuba;
 pub mod pbrt;
 pub mod source;

@@ -217,12 +217,18 @@ mod tests {
         }
     }
 
-    /// The colour (1, 1/2, 1) is the direction (1, 0, 1).
+    /// The colour (1, 1/2, 1) is the direction (1, 0, 1), that is along u; (1/2, 1, 1) leans along v.
     #[test]
     fn a_normal_map_is_its_colours() {
-        let relief = Relief { map: Map::Normals(picture(vec![[1.0, 0.5, 1.0]; 4])), rule: EVEN };
-        let at = embossed(&relief, &Transform::IDENTITY, Vec3::new(0.3, 0.7, 0.0), Vec3::Z);
-        assert!((at.frame.n - Vec3::new(1.0, 0.0, 1.0).normalize()).length() < 1e-6, "{}", at.frame.n);
+        for (colour, direction) in
+            [([1.0, 0.5, 1.0], Vec3::new(1.0, 0.0, 1.0)), ([0.5, 1.0, 1.0], Vec3::new(0.0, 1.0, 1.0))]
+        {
+            for rule in [EVEN, Rule::Pbrt] {
+                let relief = Relief { map: Map::Normals(picture(vec![colour; 4])), rule };
+                let at = embossed(&relief, &Transform::IDENTITY, Vec3::new(0.3, 0.7, 0.0), Vec3::Z);
+                assert!((at.frame.n - direction.normalize()).length() < 1e-6, "{rule:?}: {}", at.frame.n);
+            }
+        }
     }
 
     /// Seen from low on the side that it leans away from, the normal is turned to the viewer; from behind, what `twosided`

@@ -3,8 +3,8 @@
 //! The scenes lie in `scenes/words/mitsuba/KIND-WORD.xml` and `scenes/words/pbrt/KIND-WORD.pbrt`; files without a `-` in
 //! their names are pieces that scenes include. A scene of Mitsuba is rendered by Mitsuba 3 too ([`Theirs`]); a scene of pbrt
 //! is compared with the scene of the same name in Mitsuba's language, if there is one: they say the same in other words.
-//! The rows are kept in `target/words/report.json`, so that a call with `--filter` renews only some; the page is
-//! `docs/src/pictures.md`. The call fails if a scene does not render, or if two renderers differ and the reason is not known:
+//! The rows are kept in `scenes/words/rows.json`, so that a call with `--filter` renews only some, in any clone; the page
+//! that is made of them is `docs/src/pictures.md`. The call fails if a scene does not render, or if two renderers differ and the reason is not known:
 //! known ones stand in `scenes/words/differences.tsv` ([`known`]).
 
 mod known;
@@ -79,7 +79,7 @@ impl Row {
     }
 }
 
-/// Draws and compares, writes `target/words/report.json`, the pictures and `docs/src/pictures.md`.
+/// Draws and compares, writes `scenes/words/rows.json`, the pictures and `docs/src/pictures.md`.
 pub(crate) fn run(options: &Options) -> Result<()> {
     let home = root().join("scenes/words");
     let work = root().join("target/words");
@@ -93,7 +93,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let scenes = scenes(&home)?;
     let known = Known::read(&home.join("differences.tsv"))?;
     ensure!(scenes.keys().any(|name| name.contains(&options.filter)), "no scene's name contains `{}`", options.filter);
-    let file = work.join("report.json");
+    let file = home.join("rows.json");
     let mut rows: BTreeMap<String, Row> = read(&file)?.into_iter().map(|row| (row.name.clone(), row)).collect();
     rows.retain(|name, _| scenes.contains_key(name));
     let mut broken = Vec::new();
@@ -106,8 +106,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
             }
             Err(error) => broken.push(format!("{name}: {error:#}")),
         }
-        let all: Vec<&Row> = rows.values().collect();
-        std::fs::write(&file, serde_json::to_string_pretty(&all)?)?;
+        std::fs::write(&file, written(rows.values())?)?;
     }
     let rows: Vec<Row> = rows.into_values().collect();
     let level = testkit::sidak(FALSE_ALARM, rows.iter().flat_map(Row::comparisons).count().max(1));
@@ -137,12 +136,19 @@ fn scenes(home: &Path) -> Result<BTreeMap<String, Scene>> {
     Ok(scenes)
 }
 
-fn read(report: &Path) -> Result<Vec<Row>> {
-    if !report.exists() {
+/// The rows of earlier calls.
+fn read(table: &Path) -> Result<Vec<Row>> {
+    if !table.exists() {
         return Ok(Vec::new());
     }
-    let text = std::fs::read_to_string(report)?;
-    serde_json::from_str(&text).with_context(|| format!("{} is of another version: delete it", report.display()))
+    let text = std::fs::read_to_string(table)?;
+    serde_json::from_str(&text).with_context(|| format!("{} is of another version: delete it", table.display()))
+}
+
+/// A list with a line for each row, so that two lists of different rows merge.
+fn written<'r>(rows: impl Iterator<Item = &'r Row>) -> Result<String> {
+    let lines: Vec<String> = rows.map(serde_json::to_string).collect::<std::result::Result<_, _>>()?;
+    Ok(format!("[\n{}\n]\n", lines.join(",\n")))
 }
 
 /// What every scene is put through.

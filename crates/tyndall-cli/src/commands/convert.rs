@@ -18,11 +18,21 @@ pub(crate) fn run(options: &ConvertOptions) -> anyhow::Result<ExitCode> {
     let unsupported = if options.input.lenient { Unsupported::Warn } else { Unsupported::Refuse };
     let (desc, sources) = tyndall_formats::load(&options.input.scene, &options.input.define, unsupported)?;
     let written = write(&desc, &sources, &options.output, unsupported)?;
-    let meshes = written.meshes.iter().map(|(path, _)| path.as_path());
-    for path in meshes.chain([options.output.as_path()]) {
+    let beside = written.beside.iter().map(|(path, _)| path.as_path());
+    for path in beside.chain([options.output.as_path()]) {
         ensure!(
             !is_read(path, &desc, &sources),
             "{} is part of the scene that is read: choose another name for what is written",
+            path.display()
+        );
+    }
+    // An earlier scene of this name may have left files for this one to replace; others' files stay.
+    let before = fs::read_to_string(&options.output).unwrap_or_default();
+    for (path, bytes) in &written.beside {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        ensure!(
+            before.contains(&*name) || fs::read(path).map_or(!path.exists(), |there| there == *bytes),
+            "{} is there already and is something else: remove it, or choose another name for the scene",
             path.display()
         );
     }
@@ -30,15 +40,15 @@ pub(crate) fn run(options: &ConvertOptions) -> anyhow::Result<ExitCode> {
     if !warnings.is_empty() {
         eprintln!("{}\n", Diagnostics::new(warnings, sources).render(std::io::stderr().is_terminal()));
     }
-    for (path, bytes) in &written.meshes {
+    for (path, bytes) in &written.beside {
         replace(path, bytes)?;
     }
     replace(&options.output, written.text.as_bytes()).context("the scene is not converted")?;
     if !options.quiet {
-        let beside = match written.meshes.len() {
+        let beside = match written.beside.len() {
             0 => String::new(),
-            1 => ", and a mesh beside it".into(),
-            n => format!(", and {n} meshes beside it"),
+            1 => ", and a file beside it".into(),
+            n => format!(", and {n} files beside it"),
         };
         println!("{}{beside}", options.output.display());
     }

@@ -7,17 +7,18 @@ use tyndall_formats::{
     desc::{LengthUnit, SceneDesc},
     error::Diagnostics,
     inspect,
+    missing::Missing,
 };
 
 use crate::{
     args::InfoOptions,
-    load::{Loaded, load},
+    load::{Loaded, load_without},
     outputs::write_text,
 };
 
 /// Loads a scene and tells what is in it.
 pub(crate) fn run(options: &InfoOptions) -> anyhow::Result<ExitCode> {
-    let loaded = load(&options.input, None, None, None)?;
+    let loaded = load_without(Missing::All, &options.input, None, None, None)?;
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = describe(&mut out, &loaded);

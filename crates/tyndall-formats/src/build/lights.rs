@@ -228,7 +228,7 @@ fn without_translation(m: DMat4) -> DMat4 {
 /// The factor that gives the map the illuminance that is asked for, of which pbrt reckons that of an even sky of radiance L
 /// to be π L / 2 (it takes the solid angle of the hemisphere for that of the sphere): its pictures are made by it. What is
 /// sought is the middle of the picture, +z.
-fn for_illuminance(picture: &Image, illuminance: Option<f64>) -> f64 {
+pub(crate) fn for_illuminance(picture: &Image, illuminance: Option<f64>) -> f64 {
     let Some(illuminance) = illuminance else { return 1.0 };
     let (width, height) = (picture.width as usize, picture.height as usize);
     let mut sum = 0.0;

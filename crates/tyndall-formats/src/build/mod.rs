@@ -2,7 +2,7 @@
 
 mod camera;
 mod emitters;
-mod lights;
+pub(crate) mod lights;
 pub(crate) mod made;
 mod materials;
 pub(crate) mod media;

@@ -7,6 +7,8 @@ mod openexr;
 mod pfm;
 mod qoi;
 
+pub(crate) use openexr::write as write_openexr;
+
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 

@@ -95,6 +95,10 @@ const PLUGINS: &[Plugins] = &[
     Plugins { tag: "volume", known: &["constvolume"], later: &["gridvolume"] },
 ];
 
+/// What to do without Mitsuba's spectral film.
+const SPECFILM: &str = "its channels are weighed by any responses (\"srf\"), and only bands of equal width are recorded yet: \
+                        the film \"spectral\" of pbrt's language has them, \"hdrfilm\" has the colours";
+
 /// Whether an element is an object: something with plugins.
 pub(super) fn is_object(tag: &str) -> bool {
     PLUGINS.iter().any(|plugins| plugins.tag == tag)
@@ -111,7 +115,11 @@ pub(super) fn plugin(element: &Element, report: &mut Report) -> Option<&'static 
     report.errors.push(if later.contains(&word.value.as_str()) {
         let error = SceneError::not_yet(word.span, format!("the {tag} \"{}\" is not known yet", word.value));
         let known: Vec<_> = known.iter().map(|known| format!("\"{known}\"")).collect();
-        if known.is_empty() { error } else { error.help(format!("known are {}", known.join(", "))) }
+        match &*word.value {
+            "specfilm" => error.help(SPECFILM),
+            _ if known.is_empty() => error,
+            _ => error.help(format!("known are {}", known.join(", "))),
+        }
     } else {
         let error = SceneError::at(word.span, format!("there is no {tag} \"{}\"", word.value));
         error.suggest(&word.value, known.iter().chain(*later).copied())

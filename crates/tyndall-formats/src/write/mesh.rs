@@ -7,7 +7,6 @@ use tyndall::shape::Mesh;
 
 use crate::mesh::{TriangleMesh, read_ply, write_ply};
 
-use super::names::for_a_file;
 use super::{Draft, Language};
 
 impl Draft<'_> {
@@ -38,39 +37,19 @@ impl Draft<'_> {
         let mut bytes = Vec::new();
         // Writing to memory cannot fail.
         let _ = write_ply(&triangles, &mut bytes);
-        self.file_beside(shape, "ply", bytes)
+        self.file_beside(shape.span, wanted(shape), "ply", bytes)
     }
+}
 
-    /// The name of a file with these bytes, which are those of a shape. The same bytes twice are one file.
-    pub(super) fn file_beside(&mut self, shape: &ShapeDesc, ending: &str, bytes: Vec<u8>) -> String {
-        let known = self.meshes.iter().find(|(_, known)| *known == bytes).map(|(path, _)| path.clone());
-        let path = known.unwrap_or_else(|| {
-            let name = format!("{}-{}.{ending}", for_a_file(&self.stem), self.free_name(shape));
-            let path = self.directory.join(name);
-            self.meshes.push((path.clone(), bytes));
-            path
-        });
-        self.relative(&path, shape.span)
-    }
-
-    /// What the mesh of a shape is called: as its file, as the shape, or by a number.
-    fn free_name(&self, shape: &ShapeDesc) -> String {
-        let file = match &shape.kind {
-            ShapeKind::Ply { path, .. } | ShapeKind::Obj { path, .. } | ShapeKind::Serialized { path, .. } => {
-                path.value.file_stem().and_then(|stem| stem.to_str())
-            }
-            _ => None,
-        };
-        let wanted = for_a_file(file.or(shape.name.as_deref()).unwrap_or("mesh"));
-        let mut names = super::names::Names::default();
-        let prefix = format!("{}-", for_a_file(&self.stem));
-        // Neither a mesh that was just made nor a file that the scene names is written over.
-        for path in self.meshes.iter().map(|(path, _)| path).chain(self.desc.files()) {
-            let taken = path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.strip_prefix(&prefix));
-            names.unique(taken, "mesh");
+/// What the mesh of a shape would be called: as its file, or as the shape.
+pub(super) fn wanted(shape: &ShapeDesc) -> &str {
+    let file = match &shape.kind {
+        ShapeKind::Ply { path, .. } | ShapeKind::Obj { path, .. } | ShapeKind::Serialized { path, .. } => {
+            path.value.file_stem().and_then(|stem| stem.to_str())
         }
-        names.unique(Some(&wanted), "mesh")
-    }
+        _ => None,
+    };
+    file.or(shape.name.as_deref()).unwrap_or("mesh")
 }
 
 /// Whether triangles of a shape from a file have normals against their winding.

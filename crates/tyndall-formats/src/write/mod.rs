@@ -1,7 +1,7 @@
 //! From a description back to a scene file, in either language.
 //!
 //! ```text
-//! A.xml ─▶ load ─▶ SceneDesc ─▶ write ─▶ B.pbrt, and meshes that the language cannot say in words, as PLY files
+//! A.xml ─▶ load ─▶ SceneDesc ─▶ write ─▶ B.pbrt, and files beside it: meshes that the language cannot say in words, skies
 //! ```
 //!
 //! What is written reads back to the same picture, bit for bit: every number is the shortest that reads back to the same
@@ -19,6 +19,7 @@ mod number;
 mod pbrt;
 mod place;
 mod sheet;
+mod sky;
 
 use std::path::{Path, PathBuf};
 
@@ -26,6 +27,7 @@ use crate::build::made::parts;
 use crate::desc::{MaterialDesc, MaterialId, MaterialKind, SceneDesc, Span};
 use crate::error::{Diagnostics, ErrorList, SceneError, Unsupported};
 use crate::source::SourceMap;
+use names::{Names, for_a_file};
 
 /// A scene language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,8 +62,8 @@ impl Language {
 pub struct Written {
     /// The scene file.
     pub text: String,
-    /// Meshes to lie beside it, by their paths.
-    pub meshes: Vec<(PathBuf, Vec<u8>)>,
+    /// Meshes and pictures to lie beside it, by their paths.
+    pub beside: Vec<(PathBuf, Vec<u8>)>,
     /// What is not the same, and what was left out.
     pub warnings: Vec<SceneError>,
 }
@@ -91,7 +93,7 @@ pub fn write(
             .unwrap_or_default(),
         stem: target.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned()),
         errors: ErrorList::new(unsupported),
-        meshes: Vec::new(),
+        beside: Vec::new(),
     };
     let body = match language {
         Language::Pbrt => pbrt::scene(&mut draft),
@@ -106,7 +108,7 @@ pub fn write(
         Language::Pbrt => pbrt::commented(&header) + &body,
         Language::Mitsuba => mitsuba::commented(&header) + &body,
     };
-    Ok(Written { text, meshes: draft.meshes, warnings })
+    Ok(Written { text, beside: draft.beside, warnings })
 }
 
 /// Where the scene comes from, and what became of it on the way.
@@ -133,7 +135,7 @@ struct Draft<'a> {
     /// Its name without the ending.
     stem: String,
     errors: ErrorList,
-    meshes: Vec<(PathBuf, Vec<u8>)>,
+    beside: Vec<(PathBuf, Vec<u8>)>,
 }
 
 impl Draft<'_> {
@@ -156,6 +158,33 @@ impl Draft<'_> {
         let is_part = |of: &&MaterialDesc| parts(&of.kind).iter().any(|part| part.value == id);
         let mut owners = desc.materials.iter().filter(is_part).peekable();
         owners.peek().is_some() && owners.all(|of| wholes(&of.kind)) && !shapes.any(|s| s.material.value == id)
+    }
+
+    /// The name of a file with these bytes beside the new scene, called after it and `wanted`. The same bytes twice are one
+    /// file.
+    fn file_beside(&mut self, span: Span, wanted: &str, ending: &str, bytes: Vec<u8>) -> String {
+        let known = self.beside.iter().find(|(_, known)| *known == bytes).map(|(path, _)| path.clone());
+        let path = known.unwrap_or_else(|| {
+            let name = format!("{}-{}.{ending}", for_a_file(&self.stem), self.free_name(wanted));
+            let path = self.directory.join(name);
+            self.beside.push((path.clone(), bytes));
+            path
+        });
+        self.relative(&path, span)
+    }
+
+    /// `wanted`, with a number if that is taken: neither a file that was just made nor one that the scene names is written
+    /// over.
+    fn free_name(&self, wanted: &str) -> String {
+        let mut names = Names::default();
+        let prefix = format!("{}-", for_a_file(&self.stem));
+        for path in self.beside.iter().map(|(path, _)| path).chain(self.desc.files()) {
+            let stem = path.file_stem().and_then(|stem| stem.to_str());
+            if let Some(taken) = stem.and_then(|stem| stem.strip_prefix(&prefix)) {
+                names.unique(Some(taken), "");
+            }
+        }
+        names.unique(Some(&for_a_file(wanted)), "file")
     }
 
     /// A file as seen from the directory of the new scene.

@@ -116,6 +116,20 @@ mod tests {
         }
     }
 
+    /// What is right in the image is right in the world (+x), and what is high is high (+y): the lens turns both round, and so
+    /// does the film.
+    #[test]
+    fn the_picture_stands_upright() {
+        let stop = Element { curvature: 0.0, thickness: 20.0, eta: 0.0, aperture: 0.1 };
+        let camera = Realistic::new(LensSystem { elements: vec![stop], stop: Stop::Circular }, 30.0, 1.0).unwrap();
+        let dir = |x: f32, y: f32| camera.ray(Vec2::new(x, y), Vec2::splat(0.5)).ray.dir;
+        let [right, high] = [dir(0.75, 0.5), dir(0.5, 0.25)];
+        // A quarter of the film's side before a pinhole at 20.
+        let slope = 0.25 * 30.0 / 2.0f32.sqrt() / 20.0;
+        assert!((right.x / right.z - slope).abs() < 0.01 && right.y.abs() < 0.01, "{right}");
+        assert!((high.y / high.z - slope).abs() < 0.01 && high.x.abs() < 0.01, "{high}");
+    }
+
     /// The bounds lose nothing of the pupil: through a lens that vignettes, the mean over the bounds is the integral over
     /// the whole plane of the last element.
     #[test]

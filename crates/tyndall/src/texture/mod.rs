@@ -299,6 +299,17 @@ mod tests {
         }
     }
 
+    /// `|n · d|`: along the direction and against it the second part, across it the first.
+    #[test]
+    fn a_mix_by_direction_is_alike_on_both_sides() {
+        let seen = |n: Vec3| {
+            let mix = Texture::Mix { of: pair(1.0, 3.0), by: Arc::new(Weight::Direction(Vec3::Y)) };
+            mix.scalar(&TexturePoint { n, ..at(0.0, 0.0) })
+        };
+        assert_eq!([seen(Vec3::Y), seen(-Vec3::Y), seen(Vec3::X)], [3.0, 3.0, 1.0]);
+        assert!((seen(Vec3::new(0.8, -0.6, 0.0)) - 2.2).abs() < 1e-6);
+    }
+
     /// Each level doubles the leaves: 2ⁿ and the nodes above them, 2ⁿ⁺¹ − 1.
     #[test]
     fn the_cost_of_a_look_up_counts_every_path_through_shared_parts() {

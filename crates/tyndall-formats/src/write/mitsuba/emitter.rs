@@ -54,18 +54,16 @@ impl Pen<'_, '_> {
                 element
             }
             LightKind::Environment { path, scale, illuminance, mapping } => {
-                if illuminance.is_some() {
-                    self.lacks(light.span, "a light by its illuminance");
-                }
-                if *mapping == EnvironmentMapping::EqualAreaOctahedral {
-                    self.lacks(light.span, "an environment on an equal-area square");
-                    return None;
-                }
+                let (file, factor) = match mapping {
+                    EnvironmentMapping::LatitudeLongitude => (self.draft.relative(&path.value, path.span), 1.0),
+                    EnvironmentMapping::EqualAreaOctahedral => {
+                        self.draft.sky(light.span, path, *mapping, *illuminance)?
+                    }
+                };
                 let mut element = Element::plugin("emitter", "envmap");
                 element.extend(placed(light.to_world));
-                let file = self.draft.relative(&path.value, path.span);
                 element.string("filename", &file);
-                element.float_unless("scale", *scale, 1.0);
+                element.float_unless("scale", scale * factor, 1.0);
                 element
             }
             LightKind::Projector { emission, slide, fov, axis, power, even } => {

@@ -13,7 +13,7 @@ use super::placed;
 use crate::build::strands::{strand, strands};
 use crate::build::triangles::triangles_of;
 use crate::desc::{FileRef, MediumInterface, PatchDesc, Radii, ShapeDesc, ShapeKind, StrandsDesc};
-use crate::write::mesh::{has_normals, keeps_lengths};
+use crate::write::mesh::{has_normals, keeps_lengths, wanted};
 use crate::write::place::Place;
 
 impl Pen<'_, '_> {
@@ -247,7 +247,7 @@ impl Pen<'_, '_> {
             }
             lines.push('\n');
         }
-        let name = self.draft.file_beside(shape, "txt", lines.into_bytes());
+        let name = self.draft.file_beside(shape.span, wanted(shape), "txt", lines.into_bytes());
         let mut element = Element::plugin("shape", "bsplinecurve");
         element.string("filename", &name);
         Some(element)

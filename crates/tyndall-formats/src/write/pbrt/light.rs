@@ -85,14 +85,11 @@ impl Pen<'_, '_> {
                 entity
             }
             LightKind::Environment { path, scale, illuminance, mapping } => {
-                if *mapping == EnvironmentMapping::LatitudeLongitude {
-                    let what =
-                        "an environment by longitude and latitude (its `imgtool makeequiarea` turns the picture)";
-                    self.lacks(light.span, what);
-                    return None;
-                }
+                let file = match mapping {
+                    EnvironmentMapping::EqualAreaOctahedral => self.draft.relative(&path.value, path.span),
+                    EnvironmentMapping::LatitudeLongitude => self.draft.sky(light.span, path, *mapping, None)?.0,
+                };
                 let mut entity = Entity::new("LightSource", &["infinite"]);
-                let file = self.draft.relative(&path.value, path.span);
                 entity.string("filename", &file);
                 entity.float_unless("scale", *scale, 1.0);
                 entity.float_if("illuminance", *illuminance);
