@@ -7,5 +7,6 @@ pub(crate) mod lab;
 pub(crate) mod lecture;
 pub(crate) mod materials;
 pub(crate) mod mix;
+pub(crate) mod pack;
 pub(crate) mod render;
 pub(crate) mod verify;
