@@ -5,11 +5,11 @@ mod scene;
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
 use clap::{Args, ValueEnum};
-use tyndall::render;
+use indicatif::{ProgressBar, ProgressStyle};
 use tyndall_formats::film::save;
 use tyndall_grains::{container::Container, pack::Pack, radii::Radii};
 
-use crate::{interrupt, progress};
+use crate::interrupt;
 
 /// Lines that measure the mean free path: a standard error below a percent.
 const LINES: u32 = 100_000;
@@ -74,12 +74,13 @@ pub(crate) fn run(options: &PackOptions) -> anyhow::Result<ExitCode> {
     }
     interrupt::listen()?;
     let start = Instant::now();
-    let bar = progress::Progress::new(1, None, true, false);
-    let pack = Pack::fill(options.container, options.radius, options.count, options.seed, |samples| {
-        bar.tell(render::Progress { samples, total: options.count });
+    let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {pos} of {len} grains   {eta} left");
+    let bar = ProgressBar::new(options.count).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let pack = Pack::fill(options.container, options.radius, options.count, options.seed, |grains| {
+        bar.set_position(grains);
         !interrupt::requested()
     });
-    bar.finish();
+    bar.finish_and_clear();
     let pack = pack?;
     let seconds = start.elapsed().as_secs_f64();
     println!("grains             {} of {} in {seconds:.2} s", pack.grains.len(), options.count);

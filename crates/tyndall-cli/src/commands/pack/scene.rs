@@ -22,7 +22,7 @@ pub(super) fn text(pack: &Pack, eta: f64) -> String {
          AttributeBegin\n\
          AreaLightSource \"diffuse\" \"rgb L\" [22 20 18]\n\
          Translate {lamp} {lamp} {high}\n\
-         Rotate 137 1 -1 0\n\
+         Rotate 136.7 -1 1 0\n\
          Shape \"disk\" \"float radius\" {disk}\n\
          AttributeEnd\n\
          AttributeBegin\n\
