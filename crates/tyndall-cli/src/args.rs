@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use tyndall::film::Crop;
 
 use crate::{
-    commands::{lab::options::Instrument, mix::options::MixOptions},
+    commands::{lab::options::Instrument, mix::options::MixOptions, pack::PackOptions},
     values::{self, LayerList},
 };
 
@@ -37,6 +37,8 @@ pub(crate) enum Command {
     /// Mix milk, cloud, fog, ink, smoke or sea water from what is in it: coefficients, plots, media for scenes
     #[command(subcommand)]
     Mix(Box<MixOptions>),
+    /// Fill a box, ball or cylinder with grains: packing fraction, mean free path, an instanced scene
+    Pack(PackOptions),
     /// List all materials that have a name, each with its colour
     Materials(MaterialsOptions),
     /// List the layers of light that have names, or say in words what an expression selects

@@ -37,6 +37,7 @@ fn main() -> ExitCode {
         Command::Info(options) => commands::info::run(&options),
         Command::Lab(instrument) => commands::lab::run(&instrument),
         Command::Mix(options) => commands::mix::run(&options),
+        Command::Pack(options) => commands::pack::run(&options),
         Command::Materials(options) => commands::materials::run(&options),
         Command::Layers(options) => commands::layers::run(&options),
         Command::Verify(options) => commands::verify::run(&options),

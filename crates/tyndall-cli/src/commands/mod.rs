@@ -8,5 +8,6 @@ pub(crate) mod layers;
 pub(crate) mod lecture;
 pub(crate) mod materials;
 pub(crate) mod mix;
+pub(crate) mod pack;
 pub(crate) mod render;
 pub(crate) mod verify;

@@ -1,0 +1,67 @@
+//! Packs of round grains: a [`container`], [`radii`], random sequential addition ([`pack`]), and the free path of light
+//! between the grains, by rays and by formula ([`free_path`]). Lengths have whatever unit the caller has.
+
+pub mod container;
+pub mod free_path;
+pub mod pack;
+pub mod radii;
+
+mod grid;
+
+use tyndall::sampling::Rng;
+
+/// What cannot be packed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GrainError {
+    /// A text that is no container or no distribution.
+    #[error("`{text}` is not {wanted}")]
+    Syntax {
+        /// What was written.
+        text: String,
+        /// What may be written.
+        wanted: &'static str,
+    },
+    /// A length that is zero, negative, infinite or no number.
+    #[error("`{text}`: {what} must be positive and finite")]
+    Length {
+        /// What was written.
+        text: String,
+        /// Which length.
+        what: &'static str,
+    },
+    /// The largest grain is larger than the container.
+    #[error("a grain of radius {radius} does not fit into the container: the largest that does has {room}")]
+    TooLarge {
+        /// Largest radius asked for.
+        radius: f64,
+        /// Largest that fits.
+        room: f64,
+    },
+    /// The largest grain is so small beside the container that lines through it would take forever.
+    #[error("grains of radius {radius} are too small for the container: at least {least} is wanted")]
+    TooSmall {
+        /// Largest radius asked for.
+        radius: f64,
+        /// Least that is allowed.
+        least: f64,
+    },
+    /// More grains than [`pack::MOST`], or none.
+    #[error("{0} grains: between 1 and 10 million can be packed")]
+    Count(u64),
+}
+
+/// The next number of a stream, in (0, 1), with 32 random bits: as fine as the places of ten million grains want.
+fn uniform(rng: &mut Rng) -> f64 {
+    (f64::from(rng.next_u32()) + 0.5) / 4_294_967_296.0
+}
+
+/// The numbers of a text `NAME:a:b`, all of them positive and finite.
+fn lengths(text: &str, numbers: &str, what: &'static str, wanted: &'static str) -> Result<Vec<f64>, GrainError> {
+    let syntax = || GrainError::Syntax { text: text.to_owned(), wanted };
+    let lengths: Vec<f64> = numbers.split(':').map(|n| n.parse().map_err(|_| syntax())).collect::<Result<_, _>>()?;
+    if lengths.iter().all(|length| length.is_finite() && *length > 0.0) {
+        Ok(lengths)
+    } else {
+        Err(GrainError::Length { text: text.to_owned(), what })
+    }
+}
