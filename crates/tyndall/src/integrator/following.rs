@@ -42,8 +42,7 @@ impl VolPath {
         while path.step(scene, self, sink, tally) == Status::Alive {
             if let Some(mut walker) = path.begin_walk(self) {
                 let phase = &scene.medium(walker.medium).phase;
-                let end =
-                    walker.alone(phase, |announced| path.sample_announced(scene, announced, phase, sink, tally));
+                let end = walker.alone(phase, |announced| path.sample_announced(scene, announced, phase, sink, tally));
                 path.end_walk(&walker, end, phase, sink, tally);
             }
         }
