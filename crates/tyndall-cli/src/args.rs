@@ -74,6 +74,10 @@ pub(crate) struct RenderOptions {
     /// Show the image in a running tev viewer (its default address is 127.0.0.1:14158)
     #[arg(long, value_name = "HOST:PORT", help_heading = "Output")]
     pub(crate) tev: Option<String>,
+    /// Parts of the light as layers of the EXR file, with their standard errors: direct, single, orders:8,
+    /// NAME=EXPRESSION, …; see tyndall layers [default: the scene's]
+    #[arg(long, value_name = "LIST", value_parser = values::layers, help_heading = "Output")]
+    pub(crate) layers: Option<LayerList>,
     /// Say nothing but errors
     #[arg(short, long, help_heading = "Output")]
     pub(crate) quiet: bool,
@@ -97,11 +101,6 @@ pub(crate) struct RenderOptions {
     /// Size of the whole image instead of the scene's, for previews
     #[arg(long, value_name = "WxH", value_parser = values::resolution, help_heading = "What to render")]
     pub(crate) resolution: Option<[u32; 2]>,
-
-    /// Parts of the light to record too, each a layer of the EXR: direct, single, orders:8, NAME=EXPRESSION, …; see
-    /// tyndall layers [default: the scene's]
-    #[arg(long, value_name = "LIST", value_parser = values::layers, help_heading = "What to render")]
-    pub(crate) layers: Option<LayerList>,
 
     /// How light is transported
     #[arg(long, value_name = "NAME", default_value = "volpath", help_heading = "How to render")]

@@ -177,6 +177,27 @@ fn a_crop_of_the_image_is_the_image_of_the_crop() {
     }
 }
 
+/// Each layer with its standard error, once; the image is the same without them.
+#[test]
+fn parts_of_the_light_are_layers_of_the_image() {
+    let desk = Desk::with_ball("parts");
+    let with = desk.render("--layers direct,single,orders:1,direct", "with.exr");
+    let without = desk.render("", "without.exr");
+    assert_eq!(with.mean, without.mean);
+    let bytes = fs::read(desk.path("with.exr")).unwrap();
+    let count = |name: &str| bytes.windows(name.len()).filter(|window| *window == name.as_bytes()).count();
+    for name in ["direct.R", "single.G", "order0.B", "order1.R", "beyond1.R"] {
+        // A channel's name ends with a zero byte, in the list of channels.
+        assert_eq!(count(&format!("\0{name}\0")), 1, "{name}");
+        assert_eq!(count(&format!("\0stderr.{name}\0")), 1, "{name}");
+    }
+    let refused = |arguments: &str| err(&desk.tyndall(&format!("render ball.pbrt {arguments}")));
+    assert!(refused("--layers singel").contains("did you mean `single`?"));
+    assert!(refused("--layers orders:65").contains("from 0 to 64"));
+    assert!(refused("--layers direct --integrator analog").contains("analog cannot take light apart"));
+    assert!(refused("--layers x=CV'mlk'L").contains("nothing in the scene is called 'mlk'"));
+}
+
 #[test]
 fn statistics_go_to_standard_output_alone() {
     let desk = Desk::with_ball("json");

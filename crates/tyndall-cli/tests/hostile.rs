@@ -44,7 +44,7 @@ fn a_medium_that_cannot_be_is_refused() {
         desk.refuses(&["lab", "slab", "--layer", layer], words);
     }
     desk.refuses(&["lab", "slab"], "FILE.mci");
-    desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angle", "91"], "incidence");
+    desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angle", "90"], "less than 90 degrees");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--photons", "0"], "--photons");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--error", "nan"], "--error");
     desk.refuses(&["lab", "slab", "--layer", "albedo=0.9 tau=1", "--angles", "100000000"], "bins");

@@ -266,7 +266,9 @@ fn page() -> String {
          Every word of both scene languages, and what tyndall makes of it. This page is made by a test that reads each word:\n\
          `crates/tyndall-formats/tests/words.rs`. A parameter in the second column means what its language says; the third\n\
          column has those that mean something else here, and those that are errors until they are supported, or with\n\
-         `--lenient` warnings. Words with a † are tyndall's own: the other renderer does not know them.\n",
+         `--lenient` warnings. Words with a † are tyndall's own: the other renderer does not know them.\n\n\
+         One thing is not in any word: a mesh of Mitsuba's with normals at its vertices shines there to the side that these face\n\
+         (and its light samples and its hits then disagree a little), here to the side that the triangles face.\n",
     );
     let mut wrong = Vec::new();
     PBRT.section(&mut page, &mut wrong);

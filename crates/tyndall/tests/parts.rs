@@ -7,7 +7,7 @@ use tyndall::{
     bsdf::Sides,
     camera::{CameraModel, Orthographic, Perspective},
     film::{Average, Film, Layer},
-    integrator::{Deep, VolPath},
+    integrator::{Analog, Deep, Integrator, VolPath},
     light::{Distant, Light},
     lpe::{Names, named},
     material::Material,
@@ -111,6 +111,89 @@ fn measured(scene: &Scene, spp: u32) -> Vec<(f64, f64)> {
         (cell.sum[1] / count as f64, f64::from(cell.standard_error(count)[1]))
     };
     film.layers.iter().map(of).collect()
+}
+
+/// What a path finds before and at its first scattering is what one finds that ends there: by a limit on the depth. (The
+/// mean over the picture; pixels are independent.)
+#[test]
+fn emission_and_direct_light_are_what_a_depth_limit_leaves() {
+    let settings = |seed| Settings { spp: 400, seed, sampler: SamplerKind::Independent, ..Settings::default() };
+    let mean = |cells: Vec<(f64, f64)>| {
+        let n = f64::from(settings(0).spp);
+        let pixels = cells.len() as f64;
+        let mean = cells.iter().map(|(sum, _)| sum / n).sum::<f64>() / pixels;
+        let variance = cells.iter().map(|(sum, squares)| (squares / n - (sum / n).powi(2)) / (n - 1.0)).sum::<f64>();
+        (mean, variance / pixels.powi(2))
+    };
+    let scene = taken_apart(still_life(ColorMode::Rgb).scene(), "emission,x=C.?[LOB]");
+    let film = render(&scene, &VolPath::default(), &settings(5), &()).film;
+    for (depth, layer) in (0..).zip(&film.layers) {
+        let (a, va) = mean(layer.cells.iter().map(|cell| (cell.sum[1], cell.sum_of_squares[1])).collect());
+        let limited = VolPath { max_depth: Some(depth), ..VolPath::default() };
+        let film = render(&still_life(ColorMode::Rgb).scene(), &limited, &settings(6 + u64::from(depth)), &()).film;
+        let (b, vb) = mean(film.pixels.iter().map(|pixel| (pixel.sum[1], pixel.sum_of_squares[1])).collect());
+        let z = (a - b) / (va + vb).sqrt();
+        assert!(z.abs() < 4.0 && b > 0.0 && vb.sqrt() < 0.02 * b, "depth {depth}: {a} and {b}, z = {z}");
+    }
+}
+
+/// Down into an isotropic half-space of albedo ϖ under a sky of radiance 1, once scattered light has the radiance
+/// `ϖ/2 ∫ exp(−τ) E₂(τ) dτ = ϖ/2 (1 − ln 2)`, and nothing is seen through it. All of what is scattered once is direct.
+#[test]
+fn once_scattered_light_under_a_sky_has_its_closed_form() {
+    let mut world = World::seen(Vec3::Y, Vec3::ZERO);
+    world.slab(200.0, Material::Null, medium([0.2; 3], [0.8; 3], 0.0));
+    world.sky(1.0);
+    let scene = taken_apart(world.scene(), "single,direct,unscattered");
+    let [single, direct, through] = measured(&scene, 400_000)[..] else { panic!() };
+    let expected = 0.4 * (1.0 - 2f64.ln());
+    assert!((single.0 - expected).abs() < 4.5 * single.1 && single.1 < 4e-3 * expected, "{single:?} {expected}");
+    assert_eq!((direct, through.0), (single, 0.0));
+}
+
+/// An integrator that does not know what its paths went through must not claim that a layer is dark.
+#[test]
+fn who_cannot_take_light_apart_records_no_layers_of_it() {
+    let scene = taken_apart(still_life(ColorMode::Rgb).scene(), "direct");
+    let film = render(&scene, &Analog, &Settings { spp: 1, ..Settings::default() }, &()).film;
+    assert!(Analog.apart().is_none() && film.layers.is_empty());
+}
+
+/// Names and kinds of scattering, where each is the only way that light can come: through glass, off the paint beneath a
+/// polish, off the polish, out of a medium with a name and out of one without.
+#[test]
+fn expressions_select_light_by_kind_of_scattering_and_by_name() {
+    let mut scene = still_life(ColorMode::Rgb).scene();
+    let names = |list: &[&str]| list.iter().map(|name| vec![(*name).to_owned()]).collect();
+    let names = Names {
+        objects: names(&["ball", "box", "floor", "lamp"]),
+        media: names(&["glowing", "mist"]),
+        lights: names(&["lamp", "sky"]),
+    };
+    let list = "all,ball=C'ball'.*[LOB],milk=C.*V'glowing'.*[LOB],mist=C.*V'mist'.*[LOB],clear=C[^V'glowing' V'mist']*[LOB],\
+                both=C.*(V'glowing'.*V'mist'|V'mist'.*V'glowing').*[LOB],glass=C<.S'ball'>.*[LOB],sharp=CS.*[LOB],\
+                diffuse=CD.*[LOB],floor=C'floor'.*[LOB],polish=C<RS'floor'>.*[LOB],paint=C<RD'floor'>.*[LOB],\
+                glossy=C.*G.*[LOB],lamp=C.*L'lamp',background=C.*B,glow=C.*O'glowing',glows=C.*O";
+    scene.take_apart(&named::list(list).unwrap(), &names).unwrap();
+    let film = picture(&scene, Deep::Together, 20);
+    for i in 0..film.pixels.len() {
+        let of = |name: &str| {
+            let layer = film.layers.iter().find(|layer| layer.kind.channels[0] == format!("{name}.R"));
+            layer.unwrap().cells[i].sum[1]
+        };
+        let alike = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9 * of("all"), "{a} {b}");
+        // What has been in neither medium, in one and not the other, in both.
+        alike(of("clear") + of("milk") + of("mist") - of("both"), of("all"));
+        // Nothing but the ball and the polish is sharp, nothing but the paint diffuse (of what scatters first), nothing glossy.
+        alike(of("glass"), of("ball"));
+        alike(of("sharp"), of("ball") + of("polish"));
+        alike(of("diffuse"), of("paint"));
+        alike(of("floor"), of("paint") + of("polish"));
+        alike(of("glossy"), 0.0);
+        alike(of("lamp") + of("background") + of("glows"), of("all"));
+        alike(of("glow"), of("glows"));
+    }
+    assert!(film.layers.iter().all(|l| l.kind.channels[0] == "glossy.R" || l.cells.iter().any(|c| c.sum[1] > 0.0)));
 }
 
 /// Rows of numbers, after lines that begin with `#` and the names of the columns.

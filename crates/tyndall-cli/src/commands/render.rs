@@ -36,7 +36,8 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     let outputs = Outputs::new(&options.output, &options.input.scene, options.tone.into())?;
     outputs.check()?;
     let pool = pool(options.threads)?;
-    let loaded = pool.install(|| load(&options.input, options.resolution, options.color.map(color_mode), options.layers.as_ref()))?;
+    let loaded = pool
+        .install(|| load(&options.input, options.resolution, options.color.map(color_mode), options.layers.as_ref()))?;
     loaded.warn();
     let settings = settings(options, &loaded)?;
     let job = Job { options, loaded: &loaded, settings, outputs: &outputs, pool, start: Instant::now() };

@@ -12,8 +12,8 @@ use super::scene::Builder;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
-    CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc, Ignored, SamplerDesc,
-    ThinLensDesc, PartsDesc
+    CameraDesc, CameraKind, CropDesc, DistantTarget, FilmDesc, FilterDesc, FovAxis, FrameDesc, Ignored, PartsDesc,
+    SamplerDesc, ThinLensDesc,
 };
 use crate::error::SceneError;
 use crate::source::{Span, Spanned};

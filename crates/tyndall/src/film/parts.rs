@@ -61,7 +61,7 @@ mod tests {
     /// off), in every mode, to 2⁻⁵⁰ of what is added.
     #[test]
     fn the_parts_of_a_sample_add_up_to_its_colour() {
-        let mut rng = Rng::new(7);
+        let mut rng = Rng::for_sample((0, 0), 0, 7);
         for mode in [ColorMode::Rgb, ColorMode::Mono, ColorMode::Spectral] {
             for _ in 0..200 {
                 let wavelengths = Wavelengths::sample(mode, rng.next_1d());

@@ -66,8 +66,8 @@ impl Sink for PartSink<'_> {
     #[inline]
     fn add(&mut self, radiance: Lanes, history: &History, last: Option<Turn>, source: Source) {
         *self.radiance += radiance;
-        let state = last.map_or(history.state, |turn| self.by.turn(history.state, &turn));
-        let (values, mut layers) = (radiance.to_array().map(f64::from), self.by.selects(state, &source));
+        let state = last.map_or(history.state, |turn| self.by.turn(history.state, turn));
+        let (values, mut layers) = (radiance.to_array().map(f64::from), self.by.selects(state, source));
         add(&mut self.sums[0], values);
         while layers != 0 {
             add(&mut self.sums[1 + layers.trailing_zeros() as usize], values);
@@ -76,7 +76,7 @@ impl Sink for PartSink<'_> {
     }
 
     #[inline]
-    fn turned(&self, history: &mut History, turn: &Turn, times: u32) {
+    fn turned(&self, history: &mut History, turn: Turn, times: u32) {
         history.state = self.by.turns(history.state, turn, times);
     }
 }

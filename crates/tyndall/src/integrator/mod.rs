@@ -2,6 +2,7 @@
 
 pub mod analog;
 pub mod apart;
+mod following;
 pub mod pool;
 pub mod volpath;
 pub mod walk;

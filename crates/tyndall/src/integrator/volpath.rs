@@ -1,19 +1,11 @@
 //! The workhorse: unidirectional path tracing of surfaces and homogeneous media, with light sampling at every vertex
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
-use super::{
-    CameraSample, Integrator, TakesApart,
-    apart::Parts,
-    pool::{self, Crew},
-    walk::{End, Walker},
-};
 use crate::{
     light::{Light, Reference},
-    lpe::Automaton,
     material::Material,
     medium::{Inside, MediumId, Skin, Within},
     path::{Attempt, Event, History, Path, Source, Turn, Vertex, shadow},
-    phase::Phase,
     scene::Scene,
     shape::Interaction,
     spectrum::{Lanes, Wavelengths},
@@ -77,92 +69,13 @@ pub trait Sink {
 
     /// The path has taken the same turn so many times.
     #[inline]
-    fn turned(&self, _history: &mut History, _turn: &Turn, _times: u32) {}
+    fn turned(&self, _history: &mut History, _turn: Turn, _times: u32) {}
 }
 
 impl Sink for Lanes {
     #[inline]
     fn add(&mut self, radiance: Lanes, _history: &History, _last: Option<Turn>, _source: Source) {
         *self += radiance;
-    }
-}
-
-impl Integrator for VolPath {
-    fn li(&self, scene: &Scene, seen: &CameraSample, tally: &mut Tally) -> Lanes {
-        let mut radiance = Lanes::ZERO;
-        self.follow(scene, seen, &mut radiance, tally);
-        radiance
-    }
-
-    fn li_many(&self, scene: &Scene, samples: &[CameraSample], tally: &mut Tally) -> Vec<Lanes> {
-        let mut radiance = vec![Lanes::ZERO; samples.len()];
-        self.follow_many(scene, samples, &mut radiance, tally);
-        radiance
-    }
-
-    fn apart(&self) -> Option<&dyn TakesApart> {
-        Some(self)
-    }
-}
-
-impl TakesApart for VolPath {
-    fn li_apart(&self, scene: &Scene, by: &Automaton, samples: &[CameraSample], tally: &mut Tally) -> Parts {
-        let mut parts = Parts::new(by.layers(), samples.len());
-        let mut sinks = parts.sinks(by);
-        self.follow_many(scene, samples, &mut sinks, tally);
-        parts
-    }
-}
-
-impl VolPath {
-    /// Follows a path to its end.
-    fn follow(&self, scene: &Scene, seen: &CameraSample, sink: &mut impl Sink, tally: &mut Tally) {
-        let mut path = Path::new(scene, seen);
-        while path.step(scene, self, sink, tally) == Status::Alive {
-            if let Some(mut walker) = path.begin_walk(self) {
-                let phase = &scene.medium(walker.medium).phase;
-                let end = walker.alone(phase);
-                path.end_walk(&walker, end, phase, sink, tally);
-            }
-        }
-    }
-
-    /// Follows many to theirs, each with a sink of its own.
-    fn follow_many<S: Sink>(&self, scene: &Scene, samples: &[CameraSample], sinks: &mut [S], tally: &mut Tally) {
-        if self.deep == Deep::Together && !scene.media.is_empty() {
-            let paths = samples.iter().map(|seen| Path::new(scene, seen)).enumerate();
-            return pool::follow(scene, &mut Estimates { scene, settings: self, sinks }, paths, tally);
-        }
-        for (seen, sink) in samples.iter().zip(sinks) {
-            self.follow(scene, seen, sink, tally);
-        }
-    }
-}
-
-/// What many camera rays find, by paths that are under way together.
-struct Estimates<'a, S> {
-    scene: &'a Scene,
-    settings: &'a VolPath,
-    sinks: &'a mut [S],
-}
-
-impl<S: Sink> Crew for Estimates<'_, S> {
-    /// A path with the number of its camera ray.
-    type Member = (usize, Path);
-
-    fn advance(&mut self, (sample, path): &mut Self::Member, tally: &mut Tally) -> Option<Walker> {
-        let sink = &mut self.sinks[*sample];
-        while path.step(self.scene, self.settings, sink, tally) == Status::Alive {
-            if let Some(walker) = path.begin_walk(self.settings) {
-                return Some(walker);
-            }
-        }
-        None
-    }
-
-    fn end_walk(&mut self, member: &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {
-        let (sample, path) = member;
-        path.end_walk(walker, end, phase, &self.sinks[*sample], tally);
     }
 }
 
@@ -357,7 +270,7 @@ impl Path {
         }
         self.history.eta_scale *= scattered.eta * scattered.eta;
         self.history.scattered(scattered.specular);
-        sink.turned(&mut self.history, &vertex.turn(scattered.crossed, scattered.specular), 1);
+        sink.turned(&mut self.history, vertex.turn(scattered.crossed, scattered.specular), 1);
         self.history.passes = self.history.passes.saturating_add(u16::from(passes));
         self.last_vertex = reference;
         self.ray = scattered.ray;

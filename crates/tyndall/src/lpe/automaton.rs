@@ -17,7 +17,7 @@ use super::{Events, Expr, ExprError, PathLayer, letter, parse::error};
 use crate::path::turn::{Source, Turn};
 
 /// Layers of light of one film: a bit each.
-pub const MOST_LAYERS: usize = 64;
+pub const MOST_LAYERS: usize = 128;
 /// Classes of names, so that letters and classes fit into a byte.
 const MOST_CLASSES: usize = 255 / (letter::TURNS + letter::SOURCES);
 /// Memory for the automaton, and for making it [bytes].
@@ -53,7 +53,7 @@ pub struct Automaton {
     /// Where each turn leads, state by state.
     next: Vec<u16>,
     /// The layers that light of each source belongs to, state by state: a bit each.
-    selects: Vec<u64>,
+    selects: Vec<u128>,
     /// Classes of names.
     classes: usize,
     objects: Vec<u8>,
@@ -113,12 +113,12 @@ impl Automaton {
 
     /// Where a turn leads; the first state is 0.
     #[inline]
-    pub fn turn(&self, state: u16, turn: &Turn) -> u16 {
+    pub fn turn(&self, state: u16, turn: Turn) -> u16 {
         self.next[usize::from(state) * letter::TURNS * self.classes + self.column(turn)]
     }
 
     #[inline]
-    fn column(&self, turn: &Turn) -> usize {
+    fn column(&self, turn: Turn) -> usize {
         let class = match turn {
             Turn::Surface { object, .. } => class(&self.objects, object.0),
             Turn::Medium(id) => class(&self.media, id.0),
@@ -127,7 +127,7 @@ impl Automaton {
     }
 
     /// Where many of the same turns lead. From as many on as there are states, states come round again.
-    pub fn turns(&self, mut state: u16, turn: &Turn, times: u32) -> u16 {
+    pub fn turns(&self, mut state: u16, turn: Turn, times: u32) -> u16 {
         let mut left = times;
         let first = times.min(self.states() as u32);
         for _ in 0..first {
@@ -151,7 +151,7 @@ impl Automaton {
 
     /// The layers that light of a source belongs to, a bit each.
     #[inline]
-    pub fn selects(&self, state: u16, source: &Source) -> u64 {
+    pub fn selects(&self, state: u16, source: Source) -> u128 {
         let Some(letter) = letter::of_source(source) else { return 0 };
         let class = match source {
             Source::Light(id) | Source::Sky(id) => class(&self.lights, id.0),
@@ -258,16 +258,16 @@ fn pattern(expr: &Expr, classes: &[Vec<String>]) -> String {
 }
 
 fn set(events: &Events, classes: &[Vec<String>]) -> String {
-    let mut bytes = String::new();
+    let mut bytes = Vec::new();
     for letter in 0..letter::COUNT {
         for (class, names) in classes.iter().enumerate() {
-            let is_camera = letter == letter::COUNT - 1;
-            if (!is_camera || class == 0) && events.contain(letter, |name| names.iter().any(|n| n == name)) {
-                let byte = if is_camera { CAMERA } else { (letter * classes.len() + class) as u8 };
-                bytes += &format!("\\x{byte:02X}");
+            if events.contain(letter, |name| names.iter().any(|n| n == name)) {
+                let is_camera = letter == letter::COUNT - 1;
+                bytes.push(if is_camera { CAMERA } else { (letter * classes.len() + class) as u8 });
             }
         }
     }
+    let bytes = bytes.iter().map(|byte| format!("\\x{byte:02X}")).collect::<Vec<_>>().concat();
     // Without any: a set that no byte is in.
     if bytes.is_empty() { r"[^\x00-\xFF]".into() } else { format!("[{bytes}]") }
 }
@@ -275,12 +275,13 @@ fn set(events: &Events, classes: &[Vec<String>]) -> String {
 /// The automaton as tables.
 struct Tables {
     next: Vec<u16>,
-    selects: Vec<u64>,
+    selects: Vec<u128>,
 }
 
 impl Tables {
     fn of(patterns: &[String], classes: usize) -> Result<Self, String> {
-        let too_large = || "these layers are too large together: ask for fewer, or for less repetition in them".to_owned();
+        let too_large =
+            || "these layers are too large together: ask for fewer, or for less repetition in them".to_owned();
         let dfa = dense::Builder::new()
             .syntax(syntax::Config::new().unicode(false).utf8(false))
             .thompson(
@@ -325,8 +326,8 @@ impl Tables {
             for byte in turns..turns + letter::SOURCES * classes {
                 let end = dfa.next_eoi_state(dfa.next_state(state, byte as u8));
                 let found = if dfa.is_match_state(end) { dfa.match_len(end) } else { 0 };
-                let bits = (0..found).map(|i| 1 << dfa.match_pattern(end, i).as_u64());
-                tables.selects.push(bits.fold(0, |all, bit: u64| all | bit));
+                let bits = (0..found).map(|i| 1 << dfa.match_pattern(end, i).as_usize());
+                tables.selects.push(bits.fold(0, |all, bit: u128| all | bit));
             }
         }
         Some(tables)

@@ -60,17 +60,19 @@ fn phrase(events: &Events) -> String {
     let letters = plain.fold(Letters::NONE, |all, item| all.or(item.letters));
     let named = events.items.iter().filter(|item| item.name.is_some());
     if events.negated && events.items.iter().all(|item| item.name.is_none()) {
-        return words(letters.others()).join(" or ");
+        return said(words(letters.others()));
     }
-    let mut all = words(letters);
-    all.extend(named.map(with_name));
-    let all = all.join(" or ");
+    let all = said(words(letters).into_iter().chain(named.map(with_name)).collect());
     if events.negated { format!("anything but {all}") } else { all }
+}
+
+fn said(words: Vec<String>) -> String {
+    if words.is_empty() { "nothing".into() } else { words.join(" or ") }
 }
 
 fn with_name(item: &Item) -> String {
     let name = item.name.as_ref().map_or("", |name| &name.text);
-    format!("{} called '{name}'", words(item.letters).join(" or "))
+    format!("{} called '{name}'", said(words(item.letters)))
 }
 
 /// Letters in as few words as they need.
@@ -78,9 +80,6 @@ fn words(letters: Letters) -> Vec<String> {
     const TURNS: Letters = Letters(0b111_1111);
     if letters == Letters::ALL {
         return vec!["anything".into()];
-    }
-    if letters == Letters::NONE {
-        return vec!["nothing".into()];
     }
     let mut words = Vec::new();
     let rest = if letters.include(TURNS) {
@@ -140,6 +139,7 @@ mod tests {
         assert_eq!(say("CS+L").lines().nth(1), Some("once or more: sharp reflection or transmission at a surface"));
         assert_eq!(say("C.[^V]B").lines().nth(1), Some("anything"));
         assert!(say("C[^V'milk']B").contains("anything but scattering in a medium called 'milk'"));
+        assert_eq!(say("C[^.]B").lines().nth(1), Some("nothing"));
         assert_eq!(say("[RTV]"), "any scattering");
         assert_eq!(say("<[^R]S>"), "sharp transmission at a surface");
         assert_eq!(say("C(V|R){2}B").lines().nth(1), Some("2 times:"));

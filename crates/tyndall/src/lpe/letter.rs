@@ -71,7 +71,7 @@ impl Letters {
 
 /// The number of a scattering's letter.
 #[inline]
-pub fn of_turn(turn: &Turn) -> usize {
+pub fn of_turn(turn: Turn) -> usize {
     match turn {
         Turn::Surface { crossed, kind, .. } => {
             let kind = match kind {
@@ -79,7 +79,7 @@ pub fn of_turn(turn: &Turn) -> usize {
                 Kind::Glossy => 1,
                 Kind::Diffuse => 2,
             };
-            kind + if *crossed { 3 } else { 0 }
+            kind + if crossed { 3 } else { 0 }
         }
         Turn::Medium(_) => 6,
     }
@@ -87,7 +87,7 @@ pub fn of_turn(turn: &Turn) -> usize {
 
 /// The number of a source's letter, after those of the scatterings; none for what is no light.
 #[inline]
-pub fn of_source(source: &Source) -> Option<usize> {
+pub fn of_source(source: Source) -> Option<usize> {
     match source {
         Source::Light(_) => Some(7),
         Source::Medium(_) => Some(8),

@@ -10,11 +10,11 @@
 //! | `single` | by media once, and by surfaces as often as it likes | `C[RT]*V[RT]*[LOB]` |
 //! | `multiple` | by media more than once | `C[RT]*V[RT]*V.*[LOB]` |
 //! | `order3` | by media three times | `C[RT]*(V[RT]*){3}[LOB]` |
-//! | `order9up` | by media nine times or more | `C[RT]*(V[RT]*){9,}[LOB]` |
+//! | `beyond8` | by media more than eight times | `C[RT]*(V[RT]*){9,}[LOB]` |
 //! | `surface`, `volume` | in any way; what is seen there is a surface, a medium | `C[RT].*[LOB]`, `CV.*[LOB]` |
 //!
 //! With `_surface` or `_volume` behind it, a layer is that part of it in which a surface or a medium was the first to scatter,
-//! seen from the camera: `direct_volume` is `CV[LOB]`. `orders:8` stands for `order0` to `order8` and `order9up`.
+//! seen from the camera: `direct_volume` is `CV[LOB]`. `orders:8` stands for `order0` to `order8` and `beyond8`.
 //!
 //! `emission`, `direct` and `indirect` add up to all light; so do `unscattered`, `single` and `multiple`, and `orders:N`.
 
@@ -51,9 +51,9 @@ const NAMED: [Named; 9] = [
     undivided("volume", "CV.*[LOB]", "in any way; what is seen there is a medium"),
 ];
 /// Further forms, for messages.
-const FORMS: [&str; 4] = ["order3", "order9up", "orders:8", "NAME=EXPRESSION"];
+const FORMS: [&str; 4] = ["order3", "beyond8", "orders:8", "NAME=EXPRESSION"];
 /// Orders that `orders:N` tells apart.
-const MOST_ORDERS: u32 = 60;
+const MOST_ORDERS: u32 = 64;
 /// Names that the file has for other things.
 const TAKEN: [&str; 3] = ["stderr", "R", "G"];
 
@@ -67,8 +67,8 @@ pub fn table() -> impl Iterator<Item = (&'static str, &'static str, &'static str
     let plain = NAMED.into_iter().map(|Named { name, whole, meaning, .. }| (name, whole, meaning));
     let parts = [
         ("order3", "C[RT]*(V[RT]*){3}[LOB]", "by media three times"),
-        ("order9up", "C[RT]*(V[RT]*){9,}[LOB]", "by media nine times or more"),
-        ("orders:8", "", "all of order0 to order8, and order9up"),
+        ("beyond8", "C[RT]*(V[RT]*){9,}[LOB]", "by media more than eight times"),
+        ("orders:8", "", "all of order0 to order8, and beyond8"),
         ("direct_surface", "C[RT][LOB]", "as direct, first by a surface, seen from the camera"),
         ("direct_volume", "CV[LOB]", "as direct, first by a medium; so for indirect, single, multiple, order3"),
         ("NAME=EXPR", "", "what an expression selects, under a name of your own"),
@@ -92,10 +92,11 @@ pub fn items<'a>(pieces: impl Iterator<Item = &'a str>) -> Result<Vec<PathLayer>
     let mut layers: Vec<PathLayer> = Vec::new();
     for item in pieces.map(str::trim).filter(|item| !item.is_empty()) {
         for layer in self::item(item)? {
-            if layers.iter().any(|other| other.name == layer.name) {
-                return Err(ListError(format!("two layers are called `{}`", layer.name)));
+            match layers.iter().find(|other| other.name == layer.name) {
+                None => layers.push(layer),
+                Some(other) if *other == layer => {} // asked for twice, recorded once
+                Some(_) => return Err(ListError(format!("two layers are called `{}`", layer.name))),
             }
-            layers.push(layer);
         }
     }
     Ok(layers)
@@ -136,7 +137,7 @@ fn item(item: &str) -> Result<Vec<PathLayer>, ListError> {
         let most = most.parse().ok().filter(|n| *n <= MOST_ORDERS).ok_or_else(|| {
             ListError(format!("`{item}` names no orders: orders:N has N from 0 to {MOST_ORDERS}, as in orders:8"))
         })?;
-        let last = format!("order{}up", most + 1);
+        let last = format!("beyond{most}");
         return (0..=most).map(|n| format!("order{n}")).chain([last]).map(|name| named(&name)).collect();
     }
     Ok(vec![named(item)?])
@@ -171,15 +172,15 @@ pub fn named(name: &str) -> Result<PathLayer, ListError> {
     }
 }
 
-/// `order3`, `order9up`.
+/// `order3`, `beyond8`.
 fn order(base: &str, part: Option<usize>) -> Option<String> {
-    let digits = base.strip_prefix("order")?;
-    let (digits, up) = digits.strip_suffix("up").map_or((digits, ""), |digits| (digits, ","));
-    let n = digits.parse::<u32>().ok().filter(|n| *n <= MOST_ORDERS + 1 && digits == n.to_string())?;
+    let (digits, up) = base.strip_prefix("beyond").map(|n| (n, ",")).or(base.strip_prefix("order").map(|n| (n, "")))?;
+    let n = digits.parse::<u32>().ok().filter(|n| *n <= MOST_ORDERS && digits == n.to_string())?;
+    let n = if up.is_empty() { n } else { n + 1 };
     Some(match (n, part) {
-        (0, _) if up.is_empty() => part.map_or("C[RT]*[LOB]".into(), |_| String::new()),
+        (0, None) => "C[RT]*[LOB]".into(),
+        (0, Some(_)) => String::new(),
         (_, None) => format!("C[RT]*(V[RT]*){{{n}{up}}}[LOB]"),
-        (0, _) => String::new(),
         (_, Some(0)) => format!("C[RT]+(V[RT]*){{{n}{up}}}[LOB]"),
         (_, Some(_)) => format!("CV[RT]*(V[RT]*){{{}{up}}}[LOB]", n - 1),
     })

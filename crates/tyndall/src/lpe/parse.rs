@@ -130,7 +130,9 @@ impl Reader<'_> {
             return Ok(Item { letters: Letters::ALL, name: Some(name) });
         }
         let letters = self.letter(&[EVENTS, &KINDS[..3]].concat(), "an event")?;
-        Ok(Item { letters, name: self.name()? })
+        // The camera has no name: one behind it is an event of its own.
+        let name = if letters == Letters::C { None } else { self.name()? };
+        Ok(Item { letters, name })
     }
 
     /// One of the two places between angles: a letter, or several in brackets.

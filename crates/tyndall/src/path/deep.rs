@@ -150,7 +150,7 @@ impl Path {
             End::Leaves => {
                 if walker.collisions > 0 {
                     self.history.walked(walker.collisions);
-                    sink.turned(&mut self.history, &Turn::Medium(depths.id), walker.collisions);
+                    sink.turned(&mut self.history, Turn::Medium(depths.id), walker.collisions);
                     let odds = depths.odds(self.around.ball.room(walker.p).max(0.0));
                     self.weights.scatter(Lanes::ONE, phase.eval(walker.cos_theta), odds);
                     self.last_vertex = Reference { p: walker.p, normal: None };
@@ -160,7 +160,7 @@ impl Path {
             // The last collision is an event still to come, which counts itself.
             End::Light | End::Roulette => {
                 self.history.walked(walker.collisions - 1);
-                sink.turned(&mut self.history, &Turn::Medium(depths.id), walker.collisions - 1);
+                sink.turned(&mut self.history, Turn::Medium(depths.id), walker.collisions - 1);
                 Left::Collision { lit: end == End::Light }
             }
         };

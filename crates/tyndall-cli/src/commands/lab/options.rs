@@ -86,8 +86,8 @@ pub(crate) struct SlabOptions {
     /// Index below
     #[arg(long, value_name = "N", default_value_t = 1.0, help_heading = "Experiment")]
     pub(crate) n_below: f64,
-    /// Angle of incidence [degrees]
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, help_heading = "Experiment")]
+    /// Angle of incidence, less than 90 [degrees]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = values::incidence, help_heading = "Experiment")]
     pub(crate) angle: f64,
     /// Light from all directions of the upper half-space alike, instead of a beam
     #[arg(long, conflicts_with = "angle", help_heading = "Experiment")]

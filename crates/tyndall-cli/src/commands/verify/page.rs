@@ -103,7 +103,7 @@ fn markdown(experiments: &[Experiment], judgement: &Judgement, options: &VerifyO
         "{} figures of {} tables are {verdict}: p = {:.3} for the worst of all tests together, corrected for their number \
          (a program that is right is called wrong with the chance {}). The greatest |z| has p = {:.3}. Seed {}, {:.0} s.\n\n\
          ![All deviations in standard errors, and the normal law]({ALL})\n\n\
-         All figures: [{FIGURES}]({FIGURES}). What the columns mean: [Why you can trust it](trust.md).\n\n",
+         All figures: [{FIGURES}]({FIGURES}). What the columns mean: [Why you can trust it](../trust.md).\n\n",
         judgement.figures,
         judgement.families.len(),
         judgement.p,

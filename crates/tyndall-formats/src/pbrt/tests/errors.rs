@@ -54,7 +54,7 @@ fn what_pbrt_knows_and_this_reader_does_not_yet_is_said_to_be_so() {
     check(&[
         (
             "MakeNamedMedium \"smoke\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\"",
-            "1:50 the medium \"nanovdb\" is not supported yet [supported are \"homogeneous\"]",
+            "1:50 the medium \"nanovdb\" is not supported yet [supported are \"homogeneous\", \"fog\", \"ink\", \"milk\", \"sea\", \"smoke\"]",
         ),
         ("Material \"diffuse\" \"texture reflectance\" \"wood\"", "1:53 no spectrum texture is called \"wood\""),
     ]);
