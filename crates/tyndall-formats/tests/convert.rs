@@ -170,6 +170,52 @@ fn check(below: &str, side: u32, least: usize) {
     std::fs::remove_dir_all(dir).unwrap();
 }
 
+/// Layers of light are asked for alike in both languages: what one reads is what the other reads, written by it, angles and
+/// quotes included; and their paths bear the names that the file gives to media, materials and shining shapes.
+#[test]
+fn layers_of_light_go_from_either_language_to_the_other() {
+    let dir = scratch("layers");
+    let (first, other, back) = (dir.join("first.pbrt"), dir.join("other.xml"), dir.join("back.pbrt"));
+    let text = r#"
+        Film "rgb" "integer xresolution" 4 "integer yresolution" 4
+            "string layers" [ "direct" "orders:1" "milk=C.*V'milk'.*[LOB]" "wall=C<RD'wall'>(.|V{2,3})*L" ]
+        WorldBegin
+        MakeNamedMedium "milk" "string type" "homogeneous"
+        MakeNamedMaterial "wall" "string type" "diffuse"
+        NamedMaterial "wall"
+        AttributeBegin
+            AreaLightSource "diffuse"
+            Shape "sphere" "float radius" 9
+        AttributeEnd
+        MediumInterface "milk" ""
+        Material "interface"
+        Shape "sphere""#;
+    std::fs::write(&first, text).unwrap();
+    let (desc, sources) = read(&first);
+    let names: Vec<_> = desc.film.parts.layers.iter().map(|layer| &*layer.name).collect();
+    assert_eq!(names, ["direct", "order0", "order1", "beyond1", "milk", "wall"]);
+    let written = write(&desc, &sources, &other, Unsupported::Refuse).unwrap();
+    save(&other, &written);
+    let (translated, sources) = read(&other);
+    assert_eq!(translated.film.parts.layers, desc.film.parts.layers, "{}", written.text);
+    save(&back, &write(&translated, &sources, &back, Unsupported::Refuse).unwrap());
+    let (again, sources) = read(&back);
+    assert_eq!(again.film.parts.layers, desc.film.parts.layers);
+    let (scene, _) = build(&again, sources, ColorMode::Rgb).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(scene.camera.layers.len(), 6);
+
+    for (from, to, message) in
+        [("V'milk'", "V'mlik'", "nothing in the scene is called 'mlik'"), ("<RD'", "<RX'", "`X` is not a kind")]
+    {
+        std::fs::write(&first, text.replace(from, to)).unwrap();
+        let error = match load(&first, &[], Unsupported::Refuse) {
+            Err(error) => error.to_string(),
+            Ok((desc, sources)) => build(&desc, sources, ColorMode::Rgb).unwrap_err().to_string(),
+        };
+        assert!(error.contains(message) && error.contains("first.pbrt:3:") && error.contains('^'), "{error}");
+    }
+}
+
 #[test]
 fn each_word_of_mitsuba_goes_to_pbrt_and_back() {
     check("words/mitsuba", 24, 45);

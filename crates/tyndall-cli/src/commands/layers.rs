@@ -36,6 +36,5 @@ fn asked(text: &str) -> anyhow::Result<Vec<PathLayer>> {
 
 fn about(layer: &PathLayer) -> String {
     let title = if layer.name.is_empty() { layer.text.clone() } else { format!("{} = {}", layer.name, layer.text) };
-    let steps: String = explain(&layer.expr).lines().map(|line| format!("\n  {line}")).collect();
-    format!("{title}{steps}")
+    format!("{title}\n  {}", explain(&layer.expr).replace('\n', "\n  "))
 }

@@ -26,9 +26,9 @@ impl Builder<'_> {
         }
         let mut channels: Vec<_> = scene.camera.layers.iter().flat_map(|layer| &layer.channels).collect();
         channels.sort_unstable();
-        if let Some(twice) = channels.windows(2).find(|pair| pair[0] == pair[1]) {
+        if let Some([twice, _]) = channels.windows(2).find(|pair| pair[0] == pair[1]) {
             let help = "call the layer of light otherwise, as in NAME=EXPRESSION";
-            return self.fail(error(format!("two layers have a channel `{}`", twice[0])).help(help));
+            return self.fail(error(format!("two layers have a channel `{twice}`")).help(help));
         }
         Some(())
     }

@@ -70,11 +70,11 @@ mod tests {
                 let radiance = Lanes::new(total.map(|v| (v * (1.0 + 1e-6)) as f32));
                 let color = film_rgb(radiance, &wavelengths).map(|v| v * 0.7);
                 let share = Share::new(&wavelengths, 0.7, &total, color);
-                for c in 0..3 {
+                for (c, whole) in color.into_iter().map(f64::from).enumerate() {
                     let colors = layers.iter().map(|layer| share.color(layer)[c]);
                     let (sum, size) = colors.fold((0.0, 0.0), |(sum, size), v| (sum + v, size + v.abs()));
                     let weight = dot(&share.map[c].map(f64::abs), &total);
-                    assert!((sum - f64::from(color[c])).abs() <= (size + weight) * 2f64.powi(-50), "{mode:?}");
+                    assert!((sum - whole).abs() <= (size + weight) * 2f64.powi(-50), "{mode:?}");
                 }
             }
         }

@@ -60,19 +60,20 @@ fn phrase(events: &Events) -> String {
     let letters = plain.fold(Letters::NONE, |all, item| all.or(item.letters));
     let named = events.items.iter().filter(|item| item.name.is_some());
     if events.negated && events.items.iter().all(|item| item.name.is_none()) {
-        return said(words(letters.others()));
+        return said(&words(letters.others()));
     }
-    let all = said(words(letters).into_iter().chain(named.map(with_name)).collect());
+    let all: Vec<_> = words(letters).into_iter().chain(named.map(with_name)).collect();
+    let all = said(&all);
     if events.negated { format!("anything but {all}") } else { all }
 }
 
-fn said(words: Vec<String>) -> String {
+fn said(words: &[String]) -> String {
     if words.is_empty() { "nothing".into() } else { words.join(" or ") }
 }
 
 fn with_name(item: &Item) -> String {
     let name = item.name.as_ref().map_or("", |name| &name.text);
-    format!("{} called '{name}'", said(words(item.letters)))
+    format!("{} called '{name}'", said(&words(item.letters)))
 }
 
 /// Letters in as few words as they need.
