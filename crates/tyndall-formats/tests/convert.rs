@@ -228,7 +228,7 @@ fn each_word_of_pbrt_goes_to_mitsuba_and_back() {
 
 #[test]
 fn the_scenes_of_other_renderers_go_there_and_back() {
-    check("peers/mitsuba", 12, 11);
+    check("peers/mitsuba", 13, 12);
     check("peers/pbrt", 12, 8);
 }
 

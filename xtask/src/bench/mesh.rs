@@ -68,11 +68,34 @@ fn peak_memory(command: &mut Command) -> Result<f64> {
     Ok(peak)
 }
 
-/// The body of the peers' scenes `b4` and `c2`: 100,000 triangles in `target/bench/body.ply`.
-pub(crate) fn write_body() -> Result<()> {
+/// Scenes of the peers whose body is a mesh instead, their names ending in [`MESHED`]: the scene, what stands for its body
+/// there, and the name of the new one.
+const BODIES: [[&str; 3]; 2] = [
+    [
+        "b_marble_cube_matched",
+        r#"<shape type="cube"><transform name="to_world"><scale value="20"/></transform>"#,
+        "b4_marble_mesh",
+    ],
+    ["c_milk_sphere", r#"<shape type="sphere"><float name="radius" value="20"/>"#, "c2_milk_mesh"],
+];
+/// How the names of scenes end that are made here.
+pub(crate) const MESHED: &str = "_mesh";
+
+/// The same body as 100,000 triangles.
+const BODY: &str = r#"<shape type="ply"><string name="filename" value="body.ply"/><boolean name="face_normals" value="true"/>
+  <transform name="to_world"><scale value="20"/></transform>"#;
+
+/// Writes the scenes of [`BODIES`] and their body into `target/bench`.
+pub(crate) fn write_bodies() -> Result<()> {
     let directory = root().join("target/bench");
     std::fs::create_dir_all(&directory)?;
-    write_ball(&directory.join("body.ply"), 318).map(drop)
+    write_ball(&directory.join("body.ply"), 318)?;
+    for [scene, body, meshed] in BODIES {
+        let text = std::fs::read_to_string(crate::peers::scene_file(scene))?;
+        ensure!(text.contains(body), "{scene} has another body");
+        std::fs::write(directory.join(format!("{meshed}.xml")), text.replace(body, BODY))?;
+    }
+    Ok(())
 }
 
 /// Writes a ball, unless it is there; returns the number of its triangles.

@@ -50,15 +50,18 @@ pub(crate) struct Options {
     control: bool,
 }
 
-/// A scene of Mitsuba's in the repository.
+/// A scene of Mitsuba's in the repository, or one of those that are made from them.
 pub(crate) fn scene_file(scene: &str) -> PathBuf {
+    if scene.ends_with(crate::bench::mesh::MESHED) {
+        return root().join(format!("target/bench/{scene}.xml"));
+    }
     root().join(format!("scenes/peers/mitsuba/{scene}.xml"))
 }
 
 /// Compares, prints the tables, writes `target/peers/report.json` and `report.md`; fails where pictures disagree.
 pub(crate) fn run(options: &Options) -> Result<()> {
     let mitsuba = Mitsuba::install()?;
-    crate::bench::mesh::write_body()?;
+    crate::bench::mesh::write_bodies()?;
     let tyndall = if options.control { None } else { Some(Tyndall::find()?) };
     let mut failures = Vec::new();
     let mut keep = |name: &str, error: anyhow::Error| {
