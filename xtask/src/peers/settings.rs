@@ -36,7 +36,7 @@ pub(crate) struct Duel {
     pub(crate) parameters: &'static str,
     /// Samples a pixel in one run of Mitsuba: about 3 CPU seconds
     pub(crate) mitsuba_spp: u32,
-    /// Samples a pixel in one run of tyndall: about as long
+    /// Samples a pixel in one run of tyndall: about as long; more, where its start would take most of that
     pub(crate) tyndall_spp: u32,
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn duels() -> Vec<Duel> {
         duel("f_grains", Scalar, "integrator=path", 32, 24),
         duel("f2_grains_direct", Scalar, "integrator=path", 40, 24),
         duel("b_marble_cube_matched", Scalar, DEEP, 12, 6),
-        duel("b4_marble_mesh", Scalar, DEEP, 8, 6),
+        duel("b4_marble_mesh", Scalar, DEEP, 8, 96),
         duel("b2_furnace_matched", Scalar, DEEP_IN_GLASS, 24, 10),
         duel("b3_grey_matched", Scalar, "integrator=volpath rr_depth=1000000", 12, 6),
         duel("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 6),
@@ -70,6 +70,6 @@ pub(crate) fn duels() -> Vec<Duel> {
         duel("a3_marble_cube_rough_spot", Scalar, DEEP_IN_GLASS, 8, 6),
         duel("a4_marble_cube_frosted_spot", Scalar, DEEP_IN_GLASS, 24, 20),
         duel("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 3),
-        duel("c2_milk_mesh", Scalar, DEEP_IN_GLASS, 2, 3),
+        duel("c2_milk_mesh", Scalar, DEEP_IN_GLASS, 2, 48),
     ]
 }
