@@ -8,6 +8,8 @@ pub mod radii;
 
 mod grid;
 
+use std::ops::RangeInclusive;
+
 use tyndall::sampling::Rng;
 
 /// What cannot be packed.
@@ -21,8 +23,8 @@ pub enum GrainError {
         /// What may be written.
         wanted: &'static str,
     },
-    /// A length that is zero, negative, infinite or no number.
-    #[error("`{text}`: {what} must be positive and finite")]
+    /// A length outside of [`LENGTHS`], or no number.
+    #[error("`{text}`: {what} must be between {:e} and {:e}", LENGTHS.start(), LENGTHS.end())]
     Length {
         /// What was written.
         text: String,
@@ -55,11 +57,14 @@ fn uniform(rng: &mut Rng) -> f64 {
     (f64::from(rng.next_u32()) + 0.5) / 4_294_967_296.0
 }
 
-/// The numbers of a text `NAME:a:b`, all of them positive and finite.
+/// Lengths whose third powers and their sums are numbers.
+pub const LENGTHS: RangeInclusive<f64> = 1e-30..=1e30;
+
+/// The numbers of a text `NAME:a:b`, all of them lengths.
 fn lengths(text: &str, numbers: &str, what: &'static str, wanted: &'static str) -> Result<Vec<f64>, GrainError> {
     let syntax = || GrainError::Syntax { text: text.to_owned(), wanted };
     let lengths: Vec<f64> = numbers.split(':').map(|n| n.parse().map_err(|_| syntax())).collect::<Result<_, _>>()?;
-    if lengths.iter().all(|length| length.is_finite() && *length > 0.0) {
+    if lengths.iter().all(|length| LENGTHS.contains(length)) {
         Ok(lengths)
     } else {
         Err(GrainError::Length { text: text.to_owned(), what })

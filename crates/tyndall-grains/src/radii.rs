@@ -25,16 +25,13 @@ impl FromStr for Radii {
     type Err = GrainError;
 
     fn from_str(text: &str) -> Result<Self, GrainError> {
-        let wanted = "radii: R, uniform:MIN:MAX or lognormal:MEDIAN:SIGMA";
+        let wanted = "radii: R, uniform:MIN:MAX (MIN not above MAX) or lognormal:MEDIAN:SIGMA (SIGMA at most 1)";
         let (name, numbers) = text.split_once(':').unwrap_or(("mono", text));
         match (name, lengths(text, numbers, "radii", wanted)?.as_slice()) {
             ("mono", &[radius]) => Ok(Self::Mono(radius)),
             ("uniform", &[least, most]) if least <= most => Ok(Self::Uniform(least, most)),
             ("lognormal", &[median, sigma]) if sigma <= 1.0 => Ok(Self::LogNormal(median, sigma)),
-            _ => Err(GrainError::Syntax {
-                text: text.to_owned(),
-                wanted: "radii: R, uniform:MIN:MAX (MIN not above MAX) or lognormal:MEDIAN:SIGMA (SIGMA at most 1)",
-            }),
+            _ => Err(GrainError::Syntax { text: text.to_owned(), wanted }),
         }
     }
 }

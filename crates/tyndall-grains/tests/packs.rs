@@ -51,7 +51,9 @@ fn the_same_seed_packs_the_same_grains() {
 
 #[test]
 fn what_cannot_be_packed_is_an_error() {
-    for text in ["box:1:1", "box:1:1:x", "ball:3", "sphere:0", "sphere:NaN", "cylinder:1:-2", "sphere:inf", ""] {
+    for text in
+        ["box:1:1", "box:1:1:x", "ball:3", "sphere:0", "sphere:NaN", "cylinder:1:-2", "sphere:inf", "sphere:1e200", ""]
+    {
         assert!(text.parse::<Container>().is_err(), "{text}");
     }
     for text in ["0", "NaN", "uniform:2:1", "lognormal:1:5", "-1", "uniform:1", ""] {

@@ -220,24 +220,28 @@ impl Scene {
     /// A lower bound on the distance from `p` to the nearest surface and to the nearest light without a surface, at most
     /// `cap` [length].
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
-        let from_lights = self.facts.bare_lights.iter().map(|bounds| bounds.distance(p));
-        let cap = from_lights.fold(cap, f32::min);
-        let remembered = self.facts.distances.as_ref();
-        let bound = remembered.and_then(|d| d.bound(p, |centre| self.geometry.clearance(centre, f32::INFINITY)));
+        let cap = self.clear_of_lights(p, cap);
+        let bound = self.facts.distances.as_ref().and_then(|d| d.bound(p, |centre| self.search(centre)));
         bound.map_or_else(|| self.geometry.clearance(p, cap), |bound| bound.min(cap))
     }
 
     /// A point at `p` or not far from it, with its clearance, for whoever can choose: quickly, where distances are remembered.
     #[inline]
     pub fn clearance_near(&self, p: Vec3, cap: f32) -> (Vec3, f32) {
-        let search = |centre| self.geometry.clearance(centre, f32::INFINITY);
-        match self.facts.distances.as_ref().and_then(|d| d.cell(p, search)) {
-            Some((centre, nearest)) => {
-                let from_lights = self.facts.bare_lights.iter().map(|bounds| bounds.distance(centre));
-                (centre, from_lights.fold(nearest, f32::min))
-            }
+        match self.facts.distances.as_ref().and_then(|d| d.cell(p, |centre| self.search(centre))) {
+            Some((centre, nearest)) => (centre, self.clear_of_lights(centre, nearest)),
             None => (p, self.clearance(p, cap)),
         }
+    }
+
+    /// A lower bound on the distance to the nearest light without a surface, at most `cap` [length].
+    fn clear_of_lights(&self, p: Vec3, cap: f32) -> f32 {
+        self.facts.bare_lights.iter().map(|bounds| bounds.distance(p)).fold(cap, f32::min)
+    }
+
+    /// The distance to the nearest surface, however far that is [length].
+    fn search(&self, p: Vec3) -> f32 {
+        self.geometry.clearance(p, f32::INFINITY)
     }
 
     /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.

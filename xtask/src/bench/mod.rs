@@ -3,7 +3,7 @@
 mod dense;
 mod lab;
 mod lights;
-pub(crate) mod mesh;
+mod mesh;
 mod rays;
 mod roulette;
 mod scenes;

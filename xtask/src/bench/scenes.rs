@@ -21,7 +21,7 @@ pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
 /// Measures scenes and prints how many times the efficiency of the better Mitsuba each has.
 pub(super) fn race_all(scenes: &[(&str, f64)], tyndall: &Tyndall, turns: u32) -> Result<()> {
     let mitsuba = Mitsuba::install()?;
-    super::mesh::write_bodies()?;
+    crate::peers::bodies::write_bodies()?;
     for duel in &duels() {
         if let Some((_, target)) = scenes.iter().find(|(scene, _)| *scene == duel.scene) {
             race(duel, *target, turns, &mitsuba, tyndall)?;

@@ -8,6 +8,7 @@
 //! colour: their luminances differ where coloured light meets coloured things (the red wall of the Cornell box under its
 //! orange lamp is 9 % brighter in RGB, in one reflection), and nowhere else.
 
+pub(crate) mod bodies;
 pub(crate) mod image;
 pub(crate) mod mitsuba;
 pub(crate) mod report;
@@ -52,7 +53,7 @@ pub(crate) struct Options {
 
 /// A scene of Mitsuba's in the repository, or one of those that are made from them.
 pub(crate) fn scene_file(scene: &str) -> PathBuf {
-    if scene.ends_with(crate::bench::mesh::MESHED) {
+    if scene.ends_with(bodies::MESHED) {
         return root().join(format!("target/bench/{scene}.xml"));
     }
     root().join(format!("scenes/peers/mitsuba/{scene}.xml"))
@@ -61,7 +62,7 @@ pub(crate) fn scene_file(scene: &str) -> PathBuf {
 /// Compares, prints the tables, writes `target/peers/report.json` and `report.md`; fails where pictures disagree.
 pub(crate) fn run(options: &Options) -> Result<()> {
     let mitsuba = Mitsuba::install()?;
-    crate::bench::mesh::write_bodies()?;
+    bodies::write_bodies()?;
     let tyndall = if options.control { None } else { Some(Tyndall::find()?) };
     let mut failures = Vec::new();
     let mut keep = |name: &str, error: anyhow::Error| {

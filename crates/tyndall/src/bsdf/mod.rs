@@ -354,21 +354,7 @@ impl Bsdf<'_> {
     /// Whether all that is not a Dirac lobe follows Lambert's law.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
-        match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Plastic(_) => true,
-            Self::Conductor(_)
-            | Self::RoughConductor(_)
-            | Self::Dielectric(_)
-            | Self::RoughDielectric(_)
-            | Self::ThinDielectric(_)
-            | Self::RoughPlastic(_)
-            | Self::Principled(_)
-            | Self::PrincipledThin(_)
-            | Self::Coated(_)
-            | Self::Measured(_)
-            | Self::Hair(_)
-            | Self::Null => false,
-        }
+        matches!(self, Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Plastic(_))
     }
 
     /// Whether light can pass to the other side.

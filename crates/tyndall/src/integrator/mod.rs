@@ -3,6 +3,7 @@
 pub mod analog;
 pub mod apart;
 mod following;
+mod next_event;
 pub mod pool;
 pub mod volpath;
 pub mod walk;

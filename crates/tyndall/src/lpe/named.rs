@@ -55,7 +55,7 @@ const FORMS: [&str; 4] = ["order3", "beyond8", "orders:8", "NAME=EXPRESSION"];
 /// Orders that `orders:N` tells apart.
 const MOST_ORDERS: u32 = 64;
 /// Names that the file has for other things.
-const TAKEN: [&str; 3] = ["stderr", "R", "G"];
+const TAKEN: [&str; 4] = ["stderr", "R", "G", "B"];
 
 /// What is wrong with a list of layers.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -127,7 +127,7 @@ fn item(item: &str) -> Result<Vec<PathLayer>, ListError> {
     if let Some((name, text)) = item.split_once('=') {
         let name = name.trim();
         let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        if name.is_empty() || !name.chars().all(is_word) || TAKEN.contains(&name) || name == "B" {
+        if name.is_empty() || !name.chars().all(is_word) || TAKEN.contains(&name) {
             let help = "letters, digits, `_` and `-` make a name; `stderr`, R, G and B are taken";
             return Err(ListError(format!("a layer cannot be called `{name}`: {help}")));
         }

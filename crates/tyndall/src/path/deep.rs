@@ -41,6 +41,10 @@ struct Behind {
     touched: Option<f32>,
 }
 
+/// Balls that are tried before the one around the path is taken, each so much smaller than the one before \[1\].
+const TRIES: u32 = 3;
+const SMALLER: f32 = 0.4;
+
 impl Behind {
     /// The ball around `p`; or a larger one that holds it and touches the surface behind, if that is even enough and the
     /// nearest. A walk near the surface leaves such a ball far more rarely.
@@ -48,7 +52,7 @@ impl Behind {
     fn touching(&mut self, scene: &Scene, p: Vec3, around: Ball, most: f32) -> Ball {
         let Some(inward) = self.inward else { return around };
         let mut radius = self.touched.unwrap_or(most);
-        for _ in 0..3 {
+        for _ in 0..TRIES {
             if radius < 2.0 * around.radius {
                 break;
             }
@@ -57,7 +61,7 @@ impl Behind {
                 self.touched = Some(radius);
                 return ball;
             }
-            radius *= 0.4;
+            radius *= SMALLER;
         }
         self.inward = None;
         around

@@ -1,0 +1,111 @@
+//! Next event estimation: the light that a light sample finds, at a vertex, at a collision that a walk deep inside a medium
+//! has announced, and at one that was aimed at a lamp.
+
+use super::{Deep, VolPath, volpath::Sink, walk::Announced};
+use crate::{
+    light::Reference,
+    math::{Bounds, Vec2, Vec3},
+    medium::{Inside, Within},
+    path::{Attempt, History, Path, PathWeights, Source, Turn, Vertex, event::Aimed, shadow},
+    phase::Phase,
+    scene::Scene,
+    tally::Tally,
+};
+
+impl Path {
+    /// Next event estimation: one light, one direction, one shadow ray.
+    #[inline]
+    pub(super) fn sample_light(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex,
+        (attempt, [u_choice, u, v]): (&Attempt, [f32; 3]),
+        (weights, history): (&PathWeights, &History),
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
+        let reference = vertex.reference();
+        let Some((id, probability)) = scene.lights.choose(&reference, u_choice) else { return };
+        let light = scene.lights.get(id);
+        let Some(sample) = light.sample(&reference, Vec2::new(u, v), &self.wavelengths) else { return };
+        let (f, scatter_pdf) = vertex.eval(sample.dir);
+        if f.is_zero() {
+            return;
+        }
+        let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
+        if !scene.light_can_reach(inside.id()) {
+            return;
+        }
+        let origin = vertex.shadow_origin(sample.dir);
+        let wavelengths = (&self.wavelengths, self.hero);
+        let arrives =
+            shadow::transmittance(scene, origin, sample.dir, &sample.target, (inside, within), wavelengths, tally);
+        if let Some(transmittance) = arrives {
+            let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
+            let Attempt { odds, supposed, .. } = *attempt;
+            let pdf = probability * sample.pdf;
+            let weight = weights.light_sample([supposed * pdf, pdf], scatter_pdf, transmittance);
+            let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
+            let source = if light.is_environment() { Source::Sky(id) } else { Source::Light(id) };
+            sink.add(weight * (supposed / odds) * f * sample.li, history, Some(turn), source);
+        }
+    }
+
+    /// The light sample that a walk deep inside a medium has announced.
+    #[inline]
+    pub fn sample_announced(
+        &self,
+        scene: &Scene,
+        announced: &Announced,
+        phase: &Phase,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
+        let Announced { p, dir, mut rng, .. } = *announced;
+        let Some((attempt, weights)) = self.on_walk(scene, announced, &mut rng) else { return };
+        let (mut history, Some(medium)) = (self.history, self.inside.id()) else { return };
+        history.walked(announced.collisions - 1);
+        sink.turned(&mut history, Turn::Medium(medium), announced.collisions - 1);
+        let numbers = [rng.next_1d(), rng.next_1d(), rng.next_1d()];
+        let vertex = Vertex::Medium { p, dir, medium, phase };
+        self.sample_light(scene, &vertex, (&attempt, numbers), (&weights, &history), sink, tally);
+    }
+
+    /// The medium, and the bodies, that a ray from `vertex` towards `dir` starts in.
+    #[inline]
+    fn inside_towards(&self, scene: &Scene, vertex: &Vertex, dir: Vec3) -> (Inside, &Within) {
+        match vertex {
+            Vertex::Surface { hit, .. } if vertex.crosses(self.ray.dir, dir) => {
+                if scene.has_bodies() {
+                    return (self.beyond.inside(scene, &self.wavelengths), &self.beyond);
+                }
+                let inside = scene.object(hit).interface.map_or(self.inside, |interface| {
+                    Inside::of(scene, interface.towards(dir.dot(hit.ng)), &self.wavelengths)
+                });
+                (inside, &self.within)
+            }
+            _ => (self.inside, &self.within),
+        }
+    }
+
+    /// A lamp to aim at, where that is worth the while.
+    #[inline]
+    pub(super) fn lamp(&mut self, scene: &Scene, settings: &VolPath) -> Option<Bounds> {
+        let Inside::Medium { id, coefficients } = &self.inside else { return None };
+        let is_cut = settings.max_depth.is_some_and(|limit| self.history.depth() >= limit);
+        if settings.deep == Deep::Traced || is_cut || !scene.aims(*id, coefficients) {
+            return None;
+        }
+        let from = Reference { p: self.ray.origin, normal: None };
+        let u = if scene.lights.lights.len() > 1 { self.sampler.next_1d() } else { 0.0 };
+        let (lamp, _) = scene.lights.choose(&from, u)?;
+        scene.small_lamp(*id, lamp)
+    }
+
+    /// Light at a collision that was aimed at a lamp.
+    #[inline]
+    pub(super) fn sample_aimed(&self, scene: &Scene, aimed: &Aimed, sink: &mut impl Sink, tally: &mut Tally) {
+        let Aimed { vertex, weights, numbers } = aimed;
+        self.sample_light(scene, vertex, (&Attempt::CERTAIN, *numbers), (weights, &self.history), sink, tally);
+    }
+}
