@@ -26,6 +26,10 @@ pub struct Check {
     pub measured: Estimate,
     /// Whether more scattering makes it smaller, as it does what is transmitted.
     pub falls: bool,
+    /// Whether the expectation was itself sampled, and errs independently of others: what a Monte Carlo table says of bins,
+    /// of which each photon reaches one.
+    #[serde(skip)]
+    pub sampled: bool,
     /// Whether hardly any photon, or sample, may contribute to it: then it is left out where its error cannot be known.
     #[serde(skip)]
     pub binned: bool,
@@ -37,13 +41,19 @@ const ROUNDING: f64 = 1e-6;
 impl Check {
     /// A figure that more scattering makes larger.
     pub fn new(name: impl Into<String>, expected: f64, uncertainty: f64, measured: Estimate) -> Self {
-        Self { name: name.into(), expected, uncertainty, measured, falls: false, binned: false }
+        Self { name: name.into(), expected, uncertainty, measured, falls: false, sampled: false, binned: false }
     }
 
     /// A figure that more scattering makes smaller.
     #[must_use]
     pub fn falling(self) -> Self {
         Self { falls: true, ..self }
+    }
+
+    /// A figure whose expectation was sampled, independently of others.
+    #[must_use]
+    pub fn sampled(self) -> Self {
+        Self { sampled: true, ..self }
     }
 
     /// A figure to which few photons may contribute, as that of a bin.
@@ -211,15 +221,20 @@ impl Experiment {
                     |check: &Check| replicate.iter().find(|other| other.name == check.name).map(|c| c.measured.mean);
                 checks.iter().filter_map(|c| Some(sign(c) * (of(c)? - c.expected) / c.error())).sum()
             };
-            // What is not known of the expectations does not average out.
-            let unknown = checks.iter().map(|c| c.accuracy() / c.error()).sum();
-            standard(&replicates.iter().map(sum).collect::<Vec<_>>(), unknown)
+            standard(&replicates.iter().map(sum).collect::<Vec<_>>(), unknown(&checks))
         };
         let shift = together(|_| 1.0);
         let both = checks.iter().any(|c| c.falls) && checks.iter().any(|c| !c.falls);
         let tilt = both.then(|| together(|check| if check.falls { -1.0 } else { 1.0 }));
         Self { family, rare: figures - checks.len(), checks, shift, tilt }
     }
+}
+
+/// The error that a sum of all `z` has from expectations, which replicates do not average out: what was sampled adds up in
+/// squares, of all else it is taken that it errs in one direction.
+fn unknown(checks: &[Check]) -> f64 {
+    let each = |sampled| checks.iter().filter(move |c| c.sampled == sampled).map(|c| c.accuracy() / c.error());
+    each(false).sum::<f64>().hypot(each(true).map(|u| u * u).sum::<f64>().sqrt())
 }
 
 /// Relative errors beyond this come from so few photons that they say nothing.
