@@ -3,7 +3,7 @@
 use proptest::{prelude::*, strategy::ValueTree};
 use tyndall::{
     light::LightId,
-    lpe::{Automaton, Expr, Names, PathLayer, parse},
+    lpe::{Automaton, Expr, Expression, Names, PathLayer, parse},
     medium::MediumId,
     path::{Kind, Source, Turn},
     shape::ObjectId,
@@ -77,8 +77,8 @@ fn after(expr: &Expr, word: &Word, starts: &[usize]) -> Vec<usize> {
     ends
 }
 
-fn matches(expr: &Expr, word: &Word) -> bool {
-    ends(expr, word, 0).contains(&(word.0.len() + 2))
+fn matches(expr: &Expression, word: &Word) -> bool {
+    expr.all.iter().all(|pattern| ends(pattern, word, 0).contains(&(word.0.len() + 2)))
 }
 
 fn layers(texts: &[String]) -> Vec<PathLayer> {
@@ -144,8 +144,11 @@ fn text() -> impl Strategy<Value = String> {
 }
 
 fn whole() -> impl Strategy<Value = String> {
-    (text(), prop::sample::select(vec!["L", "[LOB]", "B", "O", "L'lamp'", "[^L]", "."]))
-        .prop_map(|(turns, end)| format!("C{turns}{end}"))
+    let pattern = || {
+        (text(), prop::sample::select(vec!["L", "[LOB]", "B", "O", "L'lamp'", "[^L]", "."]))
+            .prop_map(|(turns, end)| format!("C{turns}{end}"))
+    };
+    prop::collection::vec(pattern(), 1..3).prop_map(|patterns| patterns.join(" & "))
 }
 
 proptest! {
@@ -186,7 +189,7 @@ proptest! {
     }
 
     #[test]
-    fn no_text_makes_the_parser_panic(text in "[CRTVSGDLOB.<>\\[\\]^*+?{}(),|0-9'a é]{0,30}") {
+    fn no_text_makes_the_parser_panic(text in "[CRTVSGDLOB.&<>\\[\\]^*+?{}(),|0-9'a é]{0,30}") {
         if let Err(error) = parse(&text) {
             prop_assert!(error.at <= text.len() && !error.shown(&text).is_empty());
         }
@@ -261,10 +264,37 @@ fn what_is_wrong_with_layers_is_said_with_the_place() {
         ("emission_volume", "not divided"),
         ("stderr=CL", "cannot be called"),
         ("a b=CL", "cannot be called"),
+        ("single@milk", "no name in quotes"),
+        ("dircet@'milk'", "did you mean `direct`?"),
+        ("single@X'milk'", "`X` is not an event"),
         ("x=CXL", "layer `x`: `X` is not an event\n    CXL\n     ^"),
     ] {
         assert!(list(text).contains(says), "{text}: {}", list(text));
     }
     let named = tyndall::lpe::named::list("a=CV{1,2}L'x,y', orders:1").unwrap();
     assert_eq!(named.iter().map(|layer| &*layer.name).collect::<Vec<_>>(), ["a", "order0", "order1", "beyond1"]);
+}
+
+/// Layers crossed with names: of the layer's paths those that have an event of that name. One of them (collisions in milk of
+/// paths without collisions) is empty.
+#[test]
+fn layers_are_crossed_with_names() {
+    let layers = tyndall::lpe::named::list("direct@L'lamp', orders:1@V'milk', all@'wall'").unwrap();
+    let called: Vec<_> = layers.iter().map(|layer| &*layer.name).collect();
+    assert_eq!(called, ["direct_lamp", "order0_milk", "order1_milk", "beyond1_milk", "all_wall"]);
+    let automaton = Automaton::new(&layers, &names()).unwrap();
+    let [milk, paint] = [0, 1].map(|id| Turn::Medium(MediumId(id)));
+    let [wall, other] = [0, 1].map(|id| Turn::Surface { object: ObjectId(id), crossed: false, kind: Kind::Diffuse });
+    let [lamp, dark] = [0, 1].map(|id| Source::Light(LightId(id)));
+    for (turns, source, expected) in [
+        (vec![milk], lamp, 0b0_0101),
+        (vec![milk], dark, 0b0_0100),
+        (vec![paint], lamp, 0b0_0001),
+        (vec![milk, paint], lamp, 0b0_1000),
+        (vec![wall, milk], dark, 0b1_0100),
+        (vec![wall], lamp, 0b1_0001),
+        (vec![other, other], lamp, 0b0_0000),
+    ] {
+        assert_eq!(automaton.selects(follow(&automaton, &turns), source), expected, "{turns:?} {source:?}");
+    }
 }

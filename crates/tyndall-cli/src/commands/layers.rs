@@ -17,7 +17,7 @@ pub(crate) fn run(options: &LayersOptions) -> anyhow::Result<ExitCode> {
         }
         None => {
             for (name, expression, meaning) in named::table() {
-                println!("{name:<14} {expression:<24} {meaning}");
+                println!("{name:<14} {expression:<30} {meaning}");
             }
         }
     }

@@ -90,14 +90,15 @@ impl Automaton {
             return Err(BuildError::Together(format!("an image has at most {MOST_LAYERS} layers of light")));
         }
         let classes = Classes::of(layers, names)?;
-        let patterns: Vec<_> = layers.iter().map(|layer| pattern(&layer.expr, &classes.lists)).collect();
+        let patterns = |layer: &PathLayer| layer.expr.all.iter().map(|expr| pattern(expr, &classes.lists)).collect();
+        let patterns: Vec<Vec<String>> = layers.iter().map(patterns).collect();
         let tables = Tables::of(&patterns, classes.lists.len()).map_err(BuildError::Together)?;
-        let found = tables.selects.iter().fold(0, |all, bits| all | bits);
-        if let Some(layer) = layers.iter().enumerate().find_map(|(i, layer)| (found >> i & 1 == 0).then_some(layer)) {
+        let mut fits = tables.fits.iter();
+        if let Some(layer) = layers.iter().find(|layer| fits.by_ref().take(layer.expr.all.len()).any(|fits| !fits)) {
             return Err(in_layer(layer, never(layer)));
         }
         let Classes { lists, objects, media, lights } = classes;
-        let Tables { next, selects } = tables;
+        let Tables { next, selects, .. } = tables;
         Ok(Self { next, selects, classes: lists.len(), objects, media, lights, layers: layers.len() })
     }
 
@@ -196,7 +197,7 @@ impl Classes {
         let known = names.all();
         let mut mentioned: Vec<&str> = Vec::new();
         for layer in layers {
-            let items = layer.expr.events().into_iter().flat_map(|events| &events.items);
+            let items = layer.expr.all.iter().flat_map(Expr::events).flat_map(|events| &events.items);
             for name in items.filter_map(|item| item.name.as_ref()) {
                 if known.binary_search(&name.text.as_str()).is_err() {
                     return Err(in_layer(layer, no_name(&name.text, name.at, &known)));
@@ -261,8 +262,9 @@ fn set(events: &Events, classes: &[Vec<String>]) -> String {
     let mut bytes = Vec::new();
     for letter in 0..letter::COUNT {
         for (class, names) in classes.iter().enumerate() {
-            if events.contain(letter, |name| names.iter().any(|n| n == name)) {
-                let is_camera = letter == letter::COUNT - 1;
+            let is_camera = letter == letter::COUNT - 1;
+            // The camera bears no name: it is of the first class.
+            if !(is_camera && class > 0) && events.contain(letter, |name| names.iter().any(|n| n == name)) {
                 bytes.push(if is_camera { CAMERA } else { (letter * classes.len() + class) as u8 });
             }
         }
@@ -276,10 +278,14 @@ fn set(events: &Events, classes: &[Vec<String>]) -> String {
 struct Tables {
     next: Vec<u16>,
     selects: Vec<u128>,
+    /// Of each pattern, whether any path fits it. What several select together may be nothing.
+    fits: Vec<bool>,
 }
 
 impl Tables {
-    fn of(patterns: &[String], classes: usize) -> Result<Self, String> {
+    /// The automaton of layers, each with patterns of which a path must fit all.
+    fn of(layers: &[Vec<String>], classes: usize) -> Result<Self, String> {
+        let patterns = layers.concat();
         let too_large =
             || "these layers are too large together: ask for fewer, or for less repetition in them".to_owned();
         let dfa = dense::Builder::new()
@@ -298,18 +304,19 @@ impl Tables {
                     .dfa_size_limit(Some(MOST_MEMORY))
                     .determinize_size_limit(Some(MOST_MEMORY)),
             )
-            .build_many(patterns)
+            .build_many(&patterns)
             .map_err(|_| too_large())?;
         let eye = dfa.start_state(&start::Config::new().anchored(Anchored::Yes));
         let eye = eye.map_err(|e| e.to_string())?;
-        Self::explore(&dfa, dfa.next_state(eye, CAMERA), classes).ok_or_else(too_large)
+        Self::explore(&dfa, dfa.next_state(eye, CAMERA), layers, classes).ok_or_else(too_large)
     }
 
     /// All states that turns lead to from the first, in the order of their discovery; `None` if they are too many.
-    fn explore(dfa: &dense::DFA<Vec<u32>>, first: StateID, classes: usize) -> Option<Self> {
+    fn explore(dfa: &dense::DFA<Vec<u32>>, first: StateID, layers: &[Vec<String>], classes: usize) -> Option<Self> {
         let mut states = vec![first];
         let mut index = HashMap::from([(first, 0)]);
-        let mut tables = Self { next: Vec::new(), selects: Vec::new() };
+        let patterns = layers.iter().map(Vec::len).sum();
+        let mut tables = Self { next: Vec::new(), selects: Vec::new(), fits: vec![false; patterns] };
         let turns = letter::TURNS * classes;
         let mut done = 0;
         while let Some(&state) = states.get(done) {
@@ -325,11 +332,30 @@ impl Tables {
             }
             for byte in turns..turns + letter::SOURCES * classes {
                 let end = dfa.next_eoi_state(dfa.next_state(state, byte as u8));
-                let found = if dfa.is_match_state(end) { dfa.match_len(end) } else { 0 };
-                let bits = (0..found).map(|i| 1 << dfa.match_pattern(end, i).as_usize());
-                tables.selects.push(bits.fold(0, |all, bit: u128| all | bit));
+                let fits = fitting(dfa, end, patterns);
+                tables.fits.iter_mut().zip(&fits).for_each(|(any, fits)| *any |= fits);
+                tables.selects.push(selected(&fits, layers));
             }
         }
         Some(tables)
     }
+}
+
+/// Of each of the patterns, whether it fits a path that has ended here.
+fn fitting(dfa: &dense::DFA<Vec<u32>>, end: StateID, patterns: usize) -> Vec<bool> {
+    let mut fits = vec![false; patterns];
+    let found = if dfa.is_match_state(end) { dfa.match_len(end) } else { 0 };
+    for i in 0..found {
+        fits[dfa.match_pattern(end, i).as_usize()] = true;
+    }
+    fits
+}
+
+/// The layers all of whose patterns fit, a bit each.
+fn selected(mut fits: &[bool], layers: &[Vec<String>]) -> u128 {
+    layers.iter().enumerate().fold(0, |bits, (number, patterns)| {
+        let (own, others) = fits.split_at(patterns.len());
+        fits = others;
+        bits | u128::from(own.iter().all(|fits| *fits)) << number
+    })
 }

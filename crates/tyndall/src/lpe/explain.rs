@@ -1,11 +1,16 @@
 //! An expression in words.
 
-use super::{Events, Expr, Item, Letters};
+use super::{Events, Expr, Expression, Item, Letters};
 
 /// What an expression selects, a step of the path a line.
-pub fn explain(expr: &Expr) -> String {
+pub fn explain(expr: &Expression) -> String {
     let mut lines = Vec::new();
-    steps(expr, 0, &mut lines);
+    for (i, pattern) in expr.all.iter().enumerate() {
+        if i > 0 {
+            lines.push("and at once".to_owned());
+        }
+        steps(pattern, 0, &mut lines);
+    }
     lines.join("\n")
 }
 
@@ -144,5 +149,6 @@ mod tests {
         assert_eq!(say("[RTV]"), "any scattering");
         assert_eq!(say("<[^R]S>"), "sharp transmission at a surface");
         assert_eq!(say("C(V|R){2}B").lines().nth(1), Some("2 times:"));
+        assert_eq!(say("V&B"), "scattering in a medium\nand at once\nthe background");
     }
 }

@@ -13,6 +13,7 @@
 //! `<RD>` is a reflection that is diffuse; `V'milk'`, `<RD'wall'>`, `L'lamp'` are those that bear a name (of a medium, of a
 //! surface or its material, of a light); `'milk'` is anything that bears it. `[RV]` is one of several, `[^V]` any other.
 //! `*`, `+`, `?`, `{2}`, `{2,}`, `{2,4}` repeat what stands before them, `|` separates alternatives, parentheses group.
+//! `a & b` selects what both select.
 //!
 //! A boundary without a material is no event, nor is a hole. A surface is diffuse if all that it scatters beside Dirac lobes
 //! follows Lambert's law, else glossy.
@@ -33,7 +34,14 @@ pub use automaton::{Automaton, Names};
 pub use letter::Letters;
 pub use parse::parse;
 
-/// An expression.
+/// A whole expression: patterns of which a path must fit each.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Expression {
+    /// One pattern or more.
+    pub all: Vec<Expr>,
+}
+
+/// A pattern.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Expr {
     /// One event.
@@ -107,7 +115,7 @@ pub struct PathLayer {
     /// The expression as it was written.
     pub text: String,
     /// What it selects.
-    pub expr: Expr,
+    pub expr: Expression,
 }
 
 impl PathLayer {

@@ -16,6 +16,9 @@
 //! With `_surface` or `_volume` behind it, a layer is that part of it in which a surface or a medium was the first to scatter,
 //! seen from the camera: `direct_volume` is `CV[LOB]`. `orders:8` stands for `order0` to `order8` and `beyond8`.
 //!
+//! `single@'milk'` is the part of `single` whose paths meet what is called so, `direct@L'lamp'` the part of `direct` that comes from
+//! that light: `C.[LOB] & .*L'lamp'.*`, in a layer `direct_lamp`. So for every name, and for `orders:8@V'milk'`.
+//!
 //! `emission`, `direct` and `indirect` add up to all light; so do `unscattered`, `single` and `multiple`, and `orders:N`.
 
 use super::{PathLayer, parse};
@@ -51,7 +54,7 @@ const NAMED: [Named; 9] = [
     undivided("volume", "CV.*[LOB]", "in any way; what is seen there is a medium"),
 ];
 /// Further forms, for messages.
-const FORMS: [&str; 4] = ["order3", "beyond8", "orders:8", "NAME=EXPRESSION"];
+const FORMS: [&str; 5] = ["order3", "beyond8", "orders:8", "direct@'name'", "NAME=EXPRESSION"];
 /// Orders that `orders:N` tells apart.
 const MOST_ORDERS: u32 = 64;
 /// Names that the file has for other things.
@@ -71,6 +74,8 @@ pub fn table() -> impl Iterator<Item = (&'static str, &'static str, &'static str
         ("orders:8", "", "all of order0 to order8, and beyond8"),
         ("direct_surface", "C[RT][LOB]", "as direct, first by a surface, seen from the camera"),
         ("direct_volume", "CV[LOB]", "as direct, first by a medium; so for indirect, single, multiple, order3"),
+        ("single@'milk'", "C[RT]*V[RT]*[LOB] & .*'milk'.*", "as single, where paths meet what is called so"),
+        ("direct@L'lamp'", "C.[LOB] & .*L'lamp'.*", "as direct, from that light; so for every layer"),
         ("NAME=EXPR", "", "what an expression selects, under a name of your own"),
     ];
     plain.chain(parts)
@@ -133,6 +138,9 @@ fn item(item: &str) -> Result<Vec<PathLayer>, ListError> {
         }
         return Ok(vec![layer(name, text.trim())?]);
     }
+    if let Some((base, event)) = item.split_once('@') {
+        return self::item(base.trim())?.iter().map(|layer| crossed(layer, event.trim())).collect();
+    }
     if let Some(most) = item.strip_prefix("orders:") {
         let most = most.parse().ok().filter(|n| *n <= MOST_ORDERS).ok_or_else(|| {
             ListError(format!("`{item}` names no orders: orders:N has N from 0 to {MOST_ORDERS}, as in orders:8"))
@@ -141,6 +149,18 @@ fn item(item: &str) -> Result<Vec<PathLayer>, ListError> {
         return (0..=most).map(|n| format!("order{n}")).chain([last]).map(|name| named(&name)).collect();
     }
     Ok(vec![named(item)?])
+}
+
+/// The part of a layer whose paths have an event with a name.
+fn crossed(of: &PathLayer, event: &str) -> Result<PathLayer, ListError> {
+    let name = event.split(['\'', '"']).nth(1).unwrap_or("");
+    let word = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    if name.is_empty() {
+        let help = "write what is to be met behind it, as in single@'milk', direct@L'lamp'";
+        return Err(ListError(format!("`@{event}` has no name in quotes: {help}")));
+    }
+    let name: String = format!("{}_{name}", of.name).chars().map(word).collect();
+    layer(&name, &format!("{} & .*{event}.*", of.text))
 }
 
 fn layer(name: &str, text: &str) -> Result<PathLayer, ListError> {

@@ -1,6 +1,6 @@
 //! From the text of an expression to what it says.
 
-use super::{Events, Expr, ExprError, Item, Letters, Name};
+use super::{Events, Expr, ExprError, Expression, Item, Letters, Name};
 
 /// Parentheses within each other.
 const DEEPEST: usize = 32;
@@ -13,14 +13,17 @@ const LONGEST: usize = 4096;
 ///
 /// # Errors
 /// What is wrong with it, and where.
-pub fn parse(text: &str) -> Result<Expr, ExprError> {
+pub fn parse(text: &str) -> Result<Expression, ExprError> {
     if text.len() > LONGEST {
         return Err(error(LONGEST, format!("an expression has at most {LONGEST} bytes")));
     }
     let mut reader = Reader { text, at: 0, depth: 0 };
-    let expr = reader.alternatives()?;
+    let mut all = vec![reader.alternatives()?];
+    while reader.take('&') {
+        all.push(reader.alternatives()?);
+    }
     match reader.peek() {
-        None => Ok(expr),
+        None => Ok(Expression { all }),
         Some(_) => Err(error(reader.at, "this parenthesis closes nothing")),
     }
 }
@@ -60,7 +63,7 @@ impl Reader<'_> {
     fn sequence(&mut self) -> Result<Expr, ExprError> {
         let mut parts = Vec::new();
         while let Some(c) = self.peek() {
-            if matches!(c, '|' | ')') {
+            if matches!(c, '&' | '|' | ')') {
                 break;
             }
             let one = self.one()?;
@@ -80,6 +83,10 @@ impl Reader<'_> {
             self.depth += 1;
             let inside = self.alternatives()?;
             self.depth -= 1;
+            if self.peek() == Some('&') {
+                let help = "alternatives are grouped by parentheses, not what must hold at once";
+                return Err(error(self.at, "`&` joins whole expressions").help(help));
+            }
             if !self.take(')') {
                 return Err(error(start, "this parenthesis is never closed"));
             }
@@ -292,6 +299,7 @@ mod tests {
             ("CV'milkL", 2, "never closed"),
             ("Cé", 1, "`é` is not an event"),
             ("C<", 2, "missing"),
+            ("C(R&T)L", 3, "joins whole"),
         ] {
             let (found, message) = fault(text);
             assert!(found == at && message.contains(says), "{text}: {found} {message}");
