@@ -31,7 +31,7 @@ pub(crate) enum Command {
     Lecture(LectureOptions),
     /// Tell what is in a scene, without rendering it
     Info(InfoOptions),
-    /// Measure with a virtual instrument: plane layers, a point source, a ball, a random walk
+    /// Measure with a virtual instrument: plane layers, beams, furnaces, a goniometer, point sources, balls, walks
     #[command(subcommand)]
     Lab(Box<Instrument>),
     /// Mix milk, cloud, fog, ink, smoke or sea water from what is in it: coefficients, plots, media for scenes
