@@ -94,7 +94,7 @@ pub(crate) const ROUNDING_F32: f32 = f32::EPSILON / 2.0;
 #[non_exhaustive]
 pub enum FilmError {
     /// The operating system refuses.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}", path.display())]
     Io {
         /// `"read"` or `"write"`.
         action: &'static str,
