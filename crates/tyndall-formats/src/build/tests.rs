@@ -250,11 +250,15 @@ fn a_recipe_is_its_mixture_in_the_scenes_unit_of_length() {
 /// What a fibre of the first material scatters from 30 directions into 30, and what one of these numbers does. Three quarters across
 /// a fibre `h` is 1/2.
 fn assert_fibre(scene: &Scene, eta: f32, sigma_a: [f32; 3], beta: [f32; 2], degrees: f32) {
-    use tyndall::{bsdf::hair::Hair, spectrum::Lanes, texture::TexturePoint};
+    use tyndall::{
+        bsdf::{Bsdf, hair::Hair},
+        spectrum::Lanes,
+        texture::TexturePoint,
+    };
     let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::new(0.2, 0.75), n: Vec3::Z, part: None };
     let found = scene.materials[0].bsdf(&at, &Wavelengths::Rgb, 0);
     let [r, g, b] = sigma_a;
-    let expected = Hair::new(0.5, eta, Lanes::rgb(r, g, b), beta, degrees.to_radians());
+    let expected = Bsdf::Hair(Hair::new(0.5, eta, Lanes::rgb(r, g, b), beta, degrees.to_radians()));
     let direction = |i: u16| {
         let (x, angle) = (f32::from(i) / 15.0 - 0.97, 2.4 * f32::from(i));
         Vec3::new(x, (1.0 - x * x).sqrt() * angle.cos(), (1.0 - x * x).sqrt() * angle.sin())
