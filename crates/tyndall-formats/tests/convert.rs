@@ -408,3 +408,35 @@ fn hair_keeps_its_numbers_whatever_the_other_language_takes_by_default() {
     }
     std::fs::remove_dir_all(dir).unwrap();
 }
+
+/// A scene that is written in its own language says what only this language can: full scattering of a measured medium,
+/// priorities, lamps with two sides, how finely a mesh is cut that heights move.
+#[test]
+fn what_only_pbrt_says_is_written_in_pbrt() {
+    let dir = scratch("own");
+    let first = dir.join("first.pbrt");
+    let text = r#"PixelFilter "box" WorldBegin
+        MakeNamedMedium "milk" "string type" "homogeneous" "string preset" "Lowfat Milk" "bool reduced" false
+        AttributeBegin MediumInterface "milk" "" Shape "sphere" "integer priority" 3 AttributeEnd
+        AttributeBegin AreaLightSource "diffuse" "bool twosided" true Shape "disk" AttributeEnd
+        Texture "h" "float" "constant" "float value" 0.1
+        Shape "plymesh" "string filename" "a.ply" "texture displacement" "h" "float edgelength" 0.25"#;
+    std::fs::write(&first, text).unwrap();
+    let (desc, sources) = read(&first);
+    let second = dir.join("second.pbrt");
+    let written = write(&desc, &sources, &second, Unsupported::Refuse).unwrap_or_else(|e| panic!("{e}"));
+    save(&second, &written);
+    for word in [
+        "\"string preset\" \"Lowfat Milk\"",
+        "\"bool reduced\" false",
+        "\"integer priority\" 3",
+        "\"bool twosided\" true",
+        "\"float edgelength\" 0.25",
+    ] {
+        assert!(written.text.contains(word), "{word} is lost:\n{}", written.text);
+    }
+    let again =
+        write(&read(&second).0, &read(&second).1, &second, Unsupported::Refuse).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(body(&again.text), body(&written.text));
+    std::fs::remove_dir_all(dir).unwrap();
+}
