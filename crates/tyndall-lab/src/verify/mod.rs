@@ -207,7 +207,7 @@ pub const ORACLES: &[Oracle] = &[
         name: "image-radiance",
         about: "radiance of slabs by angle and azimuth under a distant light",
         source: "discrete ordinates (PythonicDISORT 1.8)",
-        sees: &[Scattering, Absorption, PhaseNormalisation, MeanCosine],
+        sees: &[Scattering, PhaseNormalisation, MeanCosine],
         measure: images::media::radiance,
     },
     Oracle {
