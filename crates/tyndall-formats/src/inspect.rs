@@ -243,6 +243,17 @@ mod tests {
         assert!(ball("10000").contains("is 2.0e4 mean free paths across"), "{}", ball("10000"));
         assert!(ball("0.0001").contains("is only 2.0e-4 mean free paths across"), "{}", ball("0.0001"));
         assert_eq!(ball("10"), "");
+        // Milk is 2.56 mm⁻¹ thick: of 1000 balls in a row, or of one whose unit is no millimetre.
+        let milk = |scale: u32| {
+            let words = format!(r#""string type" "homogeneous" "string preset" "Wholemilk" "float scale" {scale}"#);
+            warned(&format!(r#"MakeNamedMedium "m" {words} {BALL}"#))
+        };
+        assert!(
+            milk(1000).contains("does `Option \"string unit\"` say what a unit of the scene is?"),
+            "{}",
+            milk(1000)
+        );
+        assert_eq!(milk(1), "");
     }
 
     #[test]

@@ -366,3 +366,77 @@ fn an_environment_in_the_other_language_lights_a_ball_alike() {
     }
     std::fs::remove_dir_all(dir).unwrap();
 }
+
+/// Pheomelanin is 0 in pbrt and 0.2 in Mitsuba if nothing is said, eumelanin nothing or 1.3: what is a default in one language
+/// only is written, and every number comes back from both.
+#[test]
+fn hair_keeps_its_numbers_whatever_the_other_language_takes_by_default() {
+    use tyndall_formats::desc::{HairColourDesc, HairDesc, MaterialKind};
+    let dir = scratch("hair");
+    let strands =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/words/data/strands.txt").canonicalize().unwrap();
+    let hair = |desc: &SceneDesc| -> HairDesc {
+        let hair =
+            desc.materials.iter().find_map(|m| if let MaterialKind::Hair(hair) = &m.kind { Some(hair) } else { None });
+        HairDesc::clone(hair.unwrap())
+    };
+    let numbers = |hair: &HairDesc| {
+        let HairColourDesc::Pigments { eumelanin, pheomelanin } = &hair.colour else { panic!("{hair:?}") };
+        [eumelanin, pheomelanin, &hair.beta_m, &hair.beta_n, &hair.alpha].map(|n| n.value.number().unwrap())
+    };
+    for (words, expected) in [
+        ("", [1.3, 0.0, 0.3, 0.3, 2.0]),
+        ("\"float eumelanin\" 0.6", [0.6, 0.0, 0.3, 0.3, 2.0]),
+        ("\"float eumelanin\" 1.3 \"float pheomelanin\" 0.2", [1.3, 0.2, 0.3, 0.3, 2.0]),
+        (
+            "\"float pheomelanin\" 0.7 \"float beta_m\" 0.1 \"float beta_n\" 0.8 \"float alpha\" 5",
+            [0.0, 0.7, 0.1, 0.8, 5.0],
+        ),
+    ] {
+        let first = dir.join("first.pbrt");
+        let shape =
+            format!("Shape \"hair\" \"string filename\" \"{}\" \"string basis\" \"bspline\"", strands.display());
+        std::fs::write(&first, format!("PixelFilter \"box\" WorldBegin Material \"hair\" {words} {shape}")).unwrap();
+        let (mut desc, mut sources) = read(&first);
+        assert_eq!(numbers(&hair(&desc)), expected, "{words}");
+        for next in ["second.xml", "third.pbrt"].map(|name| dir.join(name)) {
+            let written = write(&desc, &sources, &next, Unsupported::Refuse).unwrap_or_else(|e| panic!("{e}"));
+            save(&next, &written);
+            (desc, sources) = read(&next);
+            assert_eq!(numbers(&hair(&desc)), expected, "{words}\n{}", written.text);
+        }
+    }
+    std::fs::remove_dir_all(dir).unwrap();
+}
+
+/// A scene that is written in its own language says what only this language can: full scattering of a measured medium,
+/// priorities, lamps with two sides, how finely a mesh is cut that heights move.
+#[test]
+fn what_only_pbrt_says_is_written_in_pbrt() {
+    let dir = scratch("own");
+    let first = dir.join("first.pbrt");
+    let text = r#"PixelFilter "box" WorldBegin
+        MakeNamedMedium "milk" "string type" "homogeneous" "string preset" "Lowfat Milk" "bool reduced" false
+        AttributeBegin MediumInterface "milk" "" Shape "sphere" "integer priority" 3 AttributeEnd
+        AttributeBegin AreaLightSource "diffuse" "bool twosided" true Shape "disk" AttributeEnd
+        Texture "h" "float" "constant" "float value" 0.1
+        Shape "plymesh" "string filename" "a.ply" "texture displacement" "h" "float edgelength" 0.25"#;
+    std::fs::write(&first, text).unwrap();
+    let (desc, sources) = read(&first);
+    let second = dir.join("second.pbrt");
+    let written = write(&desc, &sources, &second, Unsupported::Refuse).unwrap_or_else(|e| panic!("{e}"));
+    save(&second, &written);
+    for word in [
+        "\"string preset\" \"Lowfat Milk\"",
+        "\"bool reduced\" false",
+        "\"integer priority\" 3",
+        "\"bool twosided\" true",
+        "\"float edgelength\" 0.25",
+    ] {
+        assert!(written.text.contains(word), "{word} is lost:\n{}", written.text);
+    }
+    let again =
+        write(&read(&second).0, &read(&second).1, &second, Unsupported::Refuse).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(body(&again.text), body(&written.text));
+    std::fs::remove_dir_all(dir).unwrap();
+}

@@ -1,4 +1,4 @@
-//! What becomes of priorities, and of the power of lights.
+//! What becomes of priorities, of the power of lights, of hair, and of meshes that are displaced.
 
 use std::path::Path;
 
@@ -245,4 +245,107 @@ fn a_recipe_is_its_mixture_in_the_scenes_unit_of_length() {
     assert!((f64::from(milk.phase.mean_cosine()) - expected.g).abs() < 1e-3, "{}", milk.phase.mean_cosine());
     // Fog without water is air.
     assert!(scene.media[1].sigma_s.is_zero() && scene.media[1].sigma_a.is_zero());
+}
+
+/// What a fibre of the first material scatters from 30 directions into 30, and what one of these numbers does. Three quarters across
+/// a fibre `h` is 1/2.
+fn assert_fibre(scene: &Scene, eta: f32, sigma_a: [f32; 3], beta: [f32; 2], degrees: f32) {
+    use tyndall::{
+        bsdf::{Bsdf, hair::Hair},
+        spectrum::Lanes,
+        texture::TexturePoint,
+    };
+    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::new(0.2, 0.75), n: Vec3::Z, part: None };
+    let found = scene.materials[0].bsdf(&at, &Wavelengths::Rgb, 0);
+    let [r, g, b] = sigma_a;
+    let expected = Bsdf::Hair(Hair::new(0.5, eta, Lanes::rgb(r, g, b), beta, degrees.to_radians()));
+    let direction = |i: u16| {
+        let (x, angle) = (f32::from(i) / 15.0 - 0.97, 2.4 * f32::from(i));
+        Vec3::new(x, (1.0 - x * x).sqrt() * angle.cos(), (1.0 - x * x).sqrt() * angle.sin())
+    };
+    for (wo, wi) in (0..30).flat_map(|i| (0..30).map(move |j| (direction(i), direction(j)))) {
+        let [found, expected] =
+            [found.eval(wo, wi), expected.eval(wo, wi)].map(|value| [0, 1, 2].map(|c| value.lane(c)));
+        for (f, e) in found.iter().zip(expected) {
+            assert!((f - e).abs() <= 2e-5 * e.abs() + 1e-7, "{found:?}, {expected:?} for {wo} {wi}");
+        }
+    }
+}
+
+/// All numbers differ, so that none can stand for another. Pigments absorb as d'Eon et al. 2011 write; the absorption for a colour is
+/// that of Chiang et al. 2016, eq. 9.
+#[test]
+fn hair_scatters_by_the_numbers_that_it_is_given_in_both_languages() {
+    let curve = r#"Shape "curve" "point3 P" [0 0 0  0 0 1  0 1 2  0 1 3] "string type" "cylinder""#;
+    let rest = r#""float eta" 1.6 "float beta_m" 0.2 "float beta_n" 0.45 "float alpha" 5"#;
+    let of_pbrt = |words: &str| pbrt(&format!("Material \"hair\" {words} {rest} {curve}")).unwrap();
+    let strands = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/words/data/strands.txt");
+    let of_mitsuba = |words: &str| {
+        let rest = r#"<float name="int_ior" value="1.92"/><float name="ext_ior" value="1.2"/><float name="scale_tilt" value="5"/>
+            <float name="longitudinal_roughness" value="0.2"/><float name="azimuthal_roughness" value="0.45"/>"#;
+        let hair = format!("<bsdf type=\"hair\">{words}{rest}</bsdf>");
+        let file = format!("<string name=\"filename\" value=\"{strands}\"/>");
+        mitsuba(&format!("<shape type=\"bsplinecurve\">{file}{hair}</shape>")).unwrap()
+    };
+    let pigments =
+        |brown: f32, red: f32| [0, 1, 2].map(|c| brown * [0.419, 0.697, 1.37][c] + red * [0.187, 0.4, 1.05][c]);
+    let b = 0.45f32;
+    let width = 5.969 - 0.215 * b + 2.532 * b.powi(2) - 10.73 * b.powi(3) + 5.574 * b.powi(4) + 0.245 * b.powi(5);
+    let absorbed = [0.6f32, 0.4, 0.2].map(|colour| (colour.ln() / width).powi(2));
+    let number = |name: &str, value: f32| format!("<float name=\"{name}\" value=\"{value}\"/>");
+    let both = number("eumelanin", 0.7) + &number("pheomelanin", 0.4);
+    let absorbing = r#"<rgb name="sigma_a" value="0.1, 0.2, 0.4"/><float name="scale" value="3"/>"#;
+    for (scene, sigma_a) in [
+        (of_pbrt(r#""rgb sigma_a" [0.1 0.2 0.4]"#), [0.1, 0.2, 0.4]),
+        (of_pbrt(r#""rgb reflectance" [0.6 0.4 0.2]"#), absorbed),
+        (of_pbrt(r#""float eumelanin" 0.7 "float pheomelanin" 0.4"#), pigments(0.7, 0.4)),
+        (of_pbrt(""), pigments(1.3, 0.0)),
+        (of_mitsuba(absorbing), [0.3, 0.6, 1.2]),
+        (of_mitsuba(&both), pigments(0.7, 0.4)),
+        (of_mitsuba(""), pigments(1.3, 0.2)),
+    ] {
+        assert_fibre(&scene, 1.6, sigma_a, [0.2, 0.45], 5.0);
+    }
+}
+
+/// Without a word: a fibre of index 1.55 (in Mitsuba amber's, in air's), of roughness 0.3 both ways, scales at two degrees.
+#[test]
+fn hair_of_no_numbers_has_those_of_its_language() {
+    let curve = r#"Material "hair" Shape "curve" "point3 P" [0 0 0  0 0 1  0 1 2  0 1 3]"#;
+    assert_fibre(&pbrt(curve).unwrap(), 1.55, [0.5447, 0.9061, 1.781], [0.3, 0.3], 2.0);
+    let strands = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/words/data/strands.txt");
+    let hair =
+        format!(r#"<shape type="bsplinecurve"><string name="filename" value="{strands}"/><bsdf type="hair"/></shape>"#);
+    assert_fibre(&mitsuba(&hair).unwrap(), 1.55 / 1.000_277, [0.5821, 0.9861, 1.991], [0.3, 0.3], 2.0);
+    let twice = hair.replace(
+        "<bsdf type=\"hair\"/>",
+        "<bsdf type=\"hair\"><float name=\"sigma_a\" value=\"1\"/><float name=\"eumelanin\" value=\"1\"/></bsdf>",
+    );
+    let refused = mitsuba(&twice).unwrap_err().to_string();
+    assert!(refused.contains("either a \"sigma_a\" or pigments"), "{refused}");
+}
+
+/// A square of side 1 is cut until edges are below 0.3 of its side: 64 triangles (see `mesh::displace`). Edges are measured in the
+/// world, times the scene's own factor; heights are moved there with the mesh.
+#[test]
+fn a_displaced_mesh_is_cut_by_its_edges_in_the_world() {
+    let file = std::env::temp_dir().join(format!("tyndall-displaced-{}.ply", std::process::id()));
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  property float u\nproperty float v\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    std::fs::write(&file, format!("{header}0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2\n3 0 2 3\n")).unwrap();
+    for (options, scale, edge) in
+        [("", 1.0, 0.3), ("", 4.0, 1.2), ("Option \"float displacementedgescale\" 3", 4.0, 0.4)]
+    {
+        let text = format!(
+            "{options} WorldBegin Texture \"h\" \"float\" \"constant\" \"float value\" 0.125 Scale {scale} {scale} {scale}
+             Shape \"plymesh\" \"string filename\" \"{}\" \"texture displacement\" \"h\" \"float edgelength\" {edge}",
+            file.display()
+        );
+        let (desc, sources) = crate::pbrt::parse(Path::new("scene.pbrt"), &text).unwrap();
+        let (scene, _) = super::build(&desc, sources, ColorMode::Rgb).unwrap();
+        assert_eq!(scene.geometry.census().triangles, 64, "{options} {scale}");
+        let height = scene.geometry.bounds().centre().z;
+        assert!((height - 0.125 * scale).abs() < 1e-5, "{options} {scale}: {height}");
+    }
+    std::fs::remove_file(file).unwrap();
 }

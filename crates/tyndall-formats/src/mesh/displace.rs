@@ -166,6 +166,39 @@ mod tests {
         assert_eq!(mesh.positions.len() + mesh.indices.len(), edges.len() + 1);
     }
 
+    /// With normals of the file, which here lean every way, a vertex goes along its own, and one in the middle of an edge along the
+    /// unit normal between those of the ends: everywhere as far as the height.
+    #[test]
+    fn vertices_move_along_the_normals_of_the_file_by_the_height() {
+        let lean = [[0.6, 0.0, 0.8], [0.0, 0.6, 0.8], [-0.6, 0.0, 0.8], [0.0, -0.6, 0.8]].map(Vec3::from_array);
+        let moved = |height: f32| {
+            let leaning = TriangleMesh { normals: Some(lean.to_vec()), ..square() };
+            displace(leaning, |a, b| f64::from(a.distance(b)), 0.3, |_, _| height).unwrap()
+        };
+        let [from, to] = [0.0, 0.25].map(|height| moved(height).positions);
+        for (p, q) in from.iter().zip(&to) {
+            assert!((p.distance(*q) - 0.25).abs() < 1e-6, "{p} {q}");
+        }
+        for (v, normal) in lean.iter().enumerate() {
+            assert!((to[v] - from[v] - normal * 0.25).length() < 1e-6, "{v}: {} {}", from[v], to[v]);
+        }
+    }
+
+    /// Without normals a vertex has the mean of its faces' unit normals, however large these are: at the edge of a small face and
+    /// a large one, at right angles, it moves along the bisector.
+    #[test]
+    fn faces_count_alike_for_the_direction_of_a_vertex() {
+        let bent = TriangleMesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y * 9.0, Vec3::Z * -0.1],
+            indices: vec![[0, 1, 2], [0, 3, 1]],
+            uvs: Some(vec![Vec2::ZERO; 4]),
+            ..TriangleMesh::default()
+        };
+        let mesh = displace(bent, |_, _| 0.0, 1.0, |_, _| 0.5).unwrap();
+        let bisector = Vec3::new(0.0, -1.0, 1.0).normalize();
+        assert!((mesh.positions[0] - bisector * 0.5).length() < 1e-6, "{}", mesh.positions[0]);
+    }
+
     #[test]
     fn what_cannot_be_cut_is_an_error() {
         let length = |a: Vec3, b: Vec3| f64::from(a.distance(b));

@@ -9,14 +9,11 @@ use super::scene::Builder;
 use super::tree::Element;
 use super::words;
 use crate::desc::{
-    GroupDesc, GroupId, Ignored, InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MediumInterface, Radii,
-    ShapeDesc, ShapeKind, StrandsDesc, Varying,
+    GroupDesc, GroupId, InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MediumInterface, Radii, ShapeDesc,
+    ShapeKind, StrandsDesc, Varying,
 };
 use crate::error::SceneError;
 use crate::source::Spanned;
-
-/// Where Mitsuba has balls.
-const OPEN_JOINTS: &str = "strands of straight pieces are open at their joints and ends, where Mitsuba has balls";
 
 impl<'t> Builder<'t> {
     /// A shape of the scene: one that is seen, a group, or an instance of one.
@@ -117,10 +114,6 @@ impl<'t> Builder<'t> {
                     report.errors.push(SceneError::at(object.element.span, message));
                     return None;
                 };
-                if plugin == "linearcurve" {
-                    let span = object.element.span_of("type");
-                    report.ignored.push(Ignored { span, reason: OPEN_JOINTS });
-                }
                 let basis = if plugin == "linearcurve" { Basis::Linear } else { Basis::CubicBSpline };
                 let (path, radii) = (self.file(name), Radii::World);
                 ShapeKind::Strands(StrandsDesc { path, basis, style: Style::Round, radii })

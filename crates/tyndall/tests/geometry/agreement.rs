@@ -2,13 +2,15 @@
 
 use parry3d::query::RayCast;
 use tyndall::math::{Ray, Transform, Vec2, Vec3};
-use tyndall::shape::{Cylinder, Disk, Geometry, GeometryBuilder, Mesh, Patch, Sphere, SpherePart, Style, Turn};
+use tyndall::shape::{
+    Basis, Curves, Cylinder, Disk, Geometry, GeometryBuilder, Mesh, Patch, Sphere, SpherePart, Style, Turn,
+};
 
 use super::{
     affine,
     meshes::{Random, displaced_sphere},
     of_mesh,
-    strands::strand,
+    strands::{crooked, strand},
 };
 
 fn parry(v: Vec3) -> parry3d::math::Vector {
@@ -82,6 +84,9 @@ pub(super) fn everything(random: &mut Random) -> Geometry {
         for style in [Style::Flat, Style::Round] {
             builder.add_curves(strand(style, 5, 0.05, random), &Transform::IDENTITY).unwrap();
         }
+        let mut straight = Curves::new(Style::Round);
+        straight.push(Basis::Linear, &crooked(4, 0.03, random));
+        builder.add_curves(straight, &Transform::IDENTITY).unwrap();
     }
     let group = builder.begin_group();
     builder.add_mesh(displaced_sphere(6, 0.1), &Transform::IDENTITY, false).unwrap();

@@ -131,6 +131,109 @@ fn a_ray_meets_a_tube_where_it_comes_in_and_never_passes_through() {
     assert!(hits > 100 && misses > 20, "{hits} {misses}");
 }
 
+/// A strand of straight pieces that wanders, thicker and thinner from point to point.
+pub(super) fn crooked(points: usize, radius: f32, random: &mut Random) -> Vec<Knot> {
+    let (mut p, mut dir) = (random.in_ball(), random.dir());
+    (0..points)
+        .map(|_| {
+            dir = (dir + random.in_ball() * 1.5).normalize();
+            p += dir * 0.3;
+            Knot { p, radius: radius * (0.4 + random.unit()) }
+        })
+        .collect()
+}
+
+/// How deep a point is in the deepest of the balls between two knots [length]: `r(w) − |p − c(w)|` is concave, so its greatest
+/// value is found by thirds.
+fn depth_in_balls(knots: &[Knot], p: DVec3) -> f64 {
+    let deepest = |pair: &[Knot]| {
+        let [a, b] = [pair[0], pair[1]].map(|k| k.p.as_dvec3().extend(k.radius.into()));
+        let depth = |w: f64| {
+            let ball = a.lerp(b, w);
+            ball.w - (p - ball.truncate()).length()
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..45 {
+            let [left, right] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+            if depth(left) < depth(right) { low = left } else { high = right }
+        }
+        depth(low).max(depth(0.0)).max(depth(1.0))
+    };
+    knots.windows(2).map(deepest).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// A ball moves along the strand and grows and shrinks. Rays at its surface, a third of them at joints and ends, the radius up to
+/// more than half of a piece: outside until they hit, which is on the surface. Against the normal it gets deeper by the way.
+#[test]
+fn a_strand_of_straight_pieces_is_where_a_ball_goes_that_moves_along_it() {
+    let random = &mut Random(46);
+    let (mut hits, mut misses, mut caps) = (0, 0, 0);
+    for round in 0..60 {
+        let knots = crooked(2 + round % 4, [0.003, 0.03, 0.2][round % 3], random);
+        let mut curves = Curves::new(Style::Round);
+        curves.push(Basis::Linear, &knots);
+        let geometry = of(curves, &Transform::IDENTITY);
+        let least: f64 = knots.iter().map(|k| k.radius).fold(1.0, f32::min).into();
+        for _ in 0..12 {
+            let i = (random.unit() * (knots.len() - 1) as f32) as usize;
+            let w = (random.unit() * 3.0 - 1.0).clamp(0.0, 1.0);
+            let (target, radius) = (knots[i].p.lerp(knots[i + 1].p, w), knots[i].radius.max(knots[i + 1].radius));
+            let origin = target + random.dir() * (1.0 + random.unit());
+            if depth_in_balls(&knots, origin.as_dvec3()) > 0.0 {
+                continue;
+            }
+            let aim = target + random.in_ball() * (1.3 * radius);
+            let ray = Ray::new(origin, (aim - origin).normalize());
+            let hit = geometry.intersect(&ray, f32::INFINITY);
+            let end = hit.map_or(4.0, |hit| f64::from(hit.t));
+            for k in 0..150 {
+                let t = end * (f64::from(k) + 0.5) / 150.0;
+                let found = depth_in_balls(&knots, origin.as_dvec3() + ray.dir.as_dvec3() * t);
+                assert!(found < 1e-3 * least, "{ray:?} is {found} deep at {t}: {hit:?} {knots:?}");
+            }
+            let Some(hit) = hit else {
+                misses += 1;
+                continue;
+            };
+            hits += 1;
+            let interaction = geometry.interaction(&ray, &hit);
+            caps += u32::from(interaction.ng.dot(interaction.dpdu).abs() > 0.7 * interaction.dpdu.length());
+            let (p, up) = (interaction.p.as_dvec3(), interaction.ng.as_dvec3());
+            // Rounding of a point by 6e-8 of its size, on each axis.
+            let found = depth_in_balls(&knots, p);
+            assert!(found.abs() < 4e-7, "{found} deep at {interaction:?}");
+            let below = depth_in_balls(&knots, p - up * (0.1 * least));
+            assert!(below > 0.0999 * least - 4e-7, "{below} of {least} deep below {interaction:?}");
+            assert!(interaction.ng.dot(ray.dir) <= 1e-6, "{interaction:?}");
+        }
+    }
+    assert!(hits > 200 && misses > 40 && caps > 10, "{hits} {misses} {caps}");
+}
+
+/// The pieces of a straight strand fill one cone: what goes on through it meets neither balls nor pieces that lie within.
+#[test]
+fn light_in_a_straight_strand_of_many_pieces_meets_nothing() {
+    let random = &mut Random(47);
+    for tip in [0.1, 0.04] {
+        let knot = |i: usize| Knot { p: Vec3::X * (0.1 * i as f32), radius: 0.1 + (tip - 0.1) * i as f32 / 8.0 };
+        let mut curves = Curves::new(Style::Round);
+        curves.push(Basis::Linear, &(0..=8).map(knot).collect::<Vec<_>>());
+        let geometry = of(curves, &Transform::IDENTITY);
+        let mut hits = 0;
+        for _ in 0..500 {
+            let origin = Vec3::X * 0.4 + random.dir() * 2.0;
+            let aim = Vec3::X * (0.8 * random.unit()) + random.in_ball() * 0.05;
+            let ray = Ray::new(origin, (aim - origin).normalize());
+            let Some(hit) = geometry.intersect(&ray, f32::INFINITY) else { continue };
+            hits += 1;
+            let interaction = geometry.interaction(&ray, &hit);
+            let again = geometry.intersect(&interaction.spawn(ray.dir), f32::INFINITY);
+            assert_eq!(again, None, "{interaction:?}");
+        }
+        assert!(hits > 400, "{hits}");
+    }
+}
+
 /// Rays at the axis from all around, also where segments meet.
 #[test]
 fn no_ray_slips_between_the_segments_of_a_strand() {

@@ -58,6 +58,23 @@ fn a_colour_and_a_mean_free_path_make_a_medium() {
     let [one_a, one_s] = medium("", r#""rgb reflectance" [0.5 0.5 0.5]"#);
     assert!((one_a[1] + one_s[1] - 1.0).abs() < 1e-6, "by default 1 mm");
     assert!((sigma_s[1] / 0.5 - one_s[1]).abs() < 1e-6, "the albedo does not depend on the path");
+    // 2 mm are 0.2 cm.
+    let [long_a, long_s] =
+        medium("Option \"string unit\" \"cm\"", r#""rgb reflectance" [0.5 0.5 0.5] "rgb mfp" [2 2 2]"#);
+    assert!((long_a[1] + long_s[1] - 5.0).abs() < 1e-5, "{long_a:?} {long_s:?}");
+}
+
+/// A colour is seen through the boundary and by the phase function that the material has.
+#[test]
+fn the_albedo_for_a_colour_is_that_of_its_own_boundary_and_phase_function() {
+    for (params, g, eta) in [("", 0.0, 1.33), ("\"float eta\" 1.6", 0.0, 1.6), ("\"float g\" 0.8", 0.8, 1.33)] {
+        let [sigma_a, sigma_s] = medium("", &format!("\"rgb reflectance\" [0.7 0.4 0.1] {params}"));
+        for (c, colour) in [0.7, 0.4, 0.1].into_iter().enumerate() {
+            let expected = tyndall_optics::half_space::HalfSpace::new(g, eta).albedo(colour);
+            let found = f64::from(sigma_s[c] / (sigma_a[c] + sigma_s[c]));
+            assert!((found - expected).abs() < 1e-6, "{params} {colour}: {found}, {expected}");
+        }
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@
 //! | [`Style::Flat`] | a ribbon that turns to whoever looks | to the ray |
 //! | [`Style::Ribbon`] | a ribbon with normals of its own | to the ray, across the curve (as pbrt); narrower seen from its edge |
 //! | [`Style::Round`] | a tube, open at its ends, met from outside only | that of the tube |
+//! | [`Style::Round`], [`Basis::Linear`] | where a ball goes that moves along: closed, with balls at joints and ends (as Mitsuba) | that of the ball |
 //!
 //! `u` runs along the strand. `v = (1 + h)/2`, where `h` is the offset of the ray from the axis over the radius, positive on
 //! the side of `ω_o × ∂p/∂u`: what a model of fibres asks for ([`crate::bsdf::hair`]).
@@ -14,6 +15,7 @@
 //! In the tree a segment is one or more pieces, cut where that makes boxes much smaller.
 
 mod basis;
+mod capsule;
 mod segment;
 
 use glam::{DVec3, DVec4, Vec4};
@@ -28,6 +30,7 @@ use super::{
     interaction::Point,
 };
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
+use capsule::Capsule;
 use segment::{Bezier, Line};
 
 /// Pieces of a segment are cut at most so often.
@@ -62,6 +65,7 @@ pub struct Knot {
 struct Segment {
     points: [Vec4; 4],
     u: [f32; 2],
+    basis: Basis,
 }
 
 impl Segment {
@@ -97,7 +101,7 @@ impl Curves {
     pub fn push(&mut self, basis: Basis, knots: &[Knot]) {
         let points: Vec<DVec4> = knots.iter().map(|k| k.p.as_dvec3().extend(f64::from(k.radius))).collect();
         let first = self.segments.len();
-        let made = basis.beziers(&points).map(|b| Segment { points: b.map(DVec4::as_vec4), u: [0.0, 1.0] });
+        let made = basis.beziers(&points).map(|b| Segment { points: b.map(DVec4::as_vec4), u: [0.0, 1.0], basis });
         self.segments.extend(made);
         let count = (self.segments.len() - first) as f32;
         for (i, segment) in self.segments[first..].iter_mut().enumerate() {
@@ -116,7 +120,7 @@ impl Curves {
                 let share = (i as f32 + k as f32 / 3.0) / count;
                 p.w = root + (tip - root) * share;
             }
-            Segment { points, u: [0.0, 1.0] }
+            Segment { points, u: [0.0, 1.0], basis }
         }));
     }
 
@@ -200,12 +204,30 @@ impl Curves {
         let segment = &self.segments[piece.segment as usize];
         let (bezier, part) = (segment.bezier(), piece.part.map(f64::from));
         let [distance, w] = match self.style {
-            Style::Round => line.enter(&bezier, part),
+            Style::Round => match self.capsule(piece.segment) {
+                Some(capsule) => capsule.enter(&line),
+                None => line.enter(&bezier, part),
+            },
             Style::Flat => line.cross(&bezier, part, |_| 1.0),
             Style::Ribbon => line.cross(&bezier, part, |w| self.normal(piece.segment, w).dot(line.dir).abs()),
         }?;
         let t = (distance / length) as f32;
         (t > 0.0 && t < t_max).then_some((t, Vec2::new(w as f32, 0.0)))
+    }
+
+    /// A straight piece of a tube, if this is one: its neighbours are those that share its ends.
+    fn capsule(&self, segment: u32) -> Option<Capsule> {
+        let is_straight = |segment: &&Segment| segment.basis == Basis::Linear && self.style == Style::Round;
+        let get = |index: usize| self.segments.get(index).filter(is_straight).map(|segment| segment.points);
+        let index = segment as usize;
+        let [first, .., last] = get(index)?;
+        let before = index.checked_sub(1).and_then(get);
+        let next = get(index + 1).filter(|next| next[0] == last);
+        Some(Capsule {
+            ends: [first.as_dvec4(), last.as_dvec4()],
+            is_first: before.is_none_or(|before| before[3] != first),
+            next: next.map(|next| next[3].as_dvec4()),
+        })
     }
 
     /// The normal of a ribbon, turned evenly from one end to the other.
@@ -223,20 +245,27 @@ impl Curves {
         let (line, _) = line(ray);
         let Segment { u: [u0, u1], .. } = self.segments[segment as usize];
         let bezier = self.segments[segment as usize].bezier();
-        let round = self.style == Style::Round;
+        let capsule = self.capsule(segment);
         let w = f64::from(at.x);
-        let w = if round { line.refined(&bezier, w)[1] } else { w };
+        let surface = match capsule {
+            Some(capsule) => capsule.meet(&line),
+            None => (self.style == Style::Round).then(|| line.refined(&bezier, w)),
+        };
+        let w = surface.map_or(w, |[_, w]| w);
         let jet = bezier.at(w);
         let (centre, tangent, radius) = (jet.p.truncate(), jet.d.truncate(), jet.p.w);
         let axis = tangent.normalize_or(DVec3::X);
         // To the side that is positive for h.
         let side = axis.cross(line.dir).normalize_or_zero();
         let size = centre.abs().max_element() + radius;
-        let (p, ng, h, error) = if round {
-            let [distance, _] = line.refined(&bezier, w);
-            let met = line.origin + line.dir * distance;
-            let out = (met - centre).reject_from_normalized(axis).normalize_or(-line.dir);
-            let ng = out - axis * (jet.d.w / tangent.length());
+        let (p, ng, h, error) = if let Some([distance, _]) = surface {
+            let from = line.origin + line.dir * distance - centre;
+            let (out, slope) = match capsule {
+                Some(_) => (from, 0.0),
+                None => (from.reject_from_normalized(axis), jet.d.w / tangent.length()),
+            };
+            let out = out.normalize_or(-line.dir);
+            let ng = out - axis * slope;
             (centre + out * radius, ng, out.dot(side), size * (-45f64).exp2())
         } else {
             let distance = (centre - line.origin).dot(line.dir);

@@ -120,7 +120,7 @@ pub(super) type Meeting = [f64; 2];
 impl Line {
     /// From the ray's place nearest to `p` to `p`, and how far that place is.
     #[inline]
-    fn across(&self, p: DVec3) -> (DVec3, f64) {
+    pub(super) fn across(&self, p: DVec3) -> (DVec3, f64) {
         let from = p - self.origin;
         let along = from.dot(self.dir);
         (from - self.dir * along, along)
