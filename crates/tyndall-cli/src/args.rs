@@ -6,7 +6,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use tyndall::film::Crop;
 
 use crate::{
-    commands::{lab::options::Instrument, mix::options::MixOptions, pack::PackOptions},
+    commands::{
+        lab::options::Instrument, mix::options::MixOptions, pack::PackOptions, separate::options::SeparateOptions,
+    },
     values::{self, LayerList},
 };
 
@@ -43,6 +45,8 @@ pub(crate) enum Command {
     Materials(MaterialsOptions),
     /// List the layers of light that have names, or say in words what an expression selects
     Layers(LayersOptions),
+    /// Separate direct from global light by patterns that a projector throws, and show the truth beside it
+    Separate(Box<SeparateOptions>),
     /// Measure published numbers, and say whether the program reproduces them
     Verify(VerifyOptions),
 }

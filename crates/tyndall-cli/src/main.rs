@@ -40,6 +40,7 @@ fn main() -> ExitCode {
         Command::Pack(options) => commands::pack::run(&options),
         Command::Materials(options) => commands::materials::run(&options),
         Command::Layers(options) => commands::layers::run(&options),
+        Command::Separate(options) => commands::separate::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
     };
     outcome.unwrap_or_else(|error| {

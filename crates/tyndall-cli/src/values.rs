@@ -105,6 +105,14 @@ pub(crate) fn channels(word: &str) -> Result<[f64; 3], String> {
     }
 }
 
+/// `X,Y,Z`, finite.
+pub(crate) fn vector(word: &str) -> Result<[f32; 3], String> {
+    let numbers: Option<Vec<f32>> =
+        word.split(',').map(|n| n.trim().parse().ok().filter(|v: &f32| v.is_finite())).collect();
+    let three = numbers.and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "expected three numbers, such as 0.1,0,0".into())
+}
+
 /// A number of powers of ten.
 pub(crate) fn decades(word: &str) -> Result<f64, String> {
     word.parse().ok().filter(|n| (0.1..=20.0).contains(n)).ok_or_else(|| "expected a number from 0.1 to 20".into())

@@ -10,6 +10,7 @@
 //! | [`gonio`] | a surface, a phase function, layers or a grain: what leaves, by direction |
 //! | [`point`] | an isotropic point source in an infinite medium: fluence against distance |
 //! | [`walk`] | moments of a random walk |
+//! | [`separate`] | direct and global light, by patterns that a projector throws |
 //!
 //! [`photon`] launches photons and lets an instrument watch them; [`run`] repeats that until the figures are good enough,
 //! each with its standard error; [`verify`] holds the figures against published numbers.
@@ -25,6 +26,7 @@ pub mod mci;
 pub mod photon;
 pub mod point;
 pub mod run;
+pub mod separate;
 pub mod slab;
 pub mod verify;
 pub mod walk;

@@ -10,4 +10,5 @@ pub(crate) mod materials;
 pub(crate) mod mix;
 pub(crate) mod pack;
 pub(crate) mod render;
+pub(crate) mod separate;
 pub(crate) mod verify;
