@@ -124,7 +124,7 @@ fn expand(name: &Path) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// `milk` for `scenes/milk.pbrt` and, because `scene` says nothing, for `scenes/milk/scene.pbrt`.
-fn stem_of_scene(scene: &Path) -> PathBuf {
+pub(crate) fn stem_of_scene(scene: &Path) -> PathBuf {
     let stem = scene.file_stem().unwrap_or("image".as_ref());
     let parent = std::path::absolute(scene).ok().and_then(|p| Some(p.parent()?.file_name()?.to_owned()));
     match parent {
