@@ -3,6 +3,8 @@
 //! The browser is `chromium-headless-shell` or `chromium` (Debian: `apt-get install chromium-headless-shell`). Where there
 //! is none the test says loudly that it has tested nothing.
 
+#![allow(clippy::print_stderr)] // a test that tests nothing says so
+
 mod common;
 
 use std::{fs, io::BufReader, path::Path, process::Command};

@@ -14,8 +14,8 @@ use crate::{
     shrink::shrink,
 };
 
-/// Of a strip, about [pixels].
-const WIDTH: u32 = 840;
+/// Of the pictures of a strip, at most [pixels].
+const WIDTH: u32 = 640;
 const GAP: u32 = 6;
 const CAPTION: u32 = 40;
 const PAPER: [u8; 3] = [255; 3];
@@ -44,8 +44,7 @@ pub(super) fn write(path: &Path, image: &Image, group: &Group, exposure: f32) ->
     let cells: Vec<_> = [all].into_iter().chain(layers).collect();
 
     let size = [image.crop.width(), image.crop.height()];
-    let edge = (size[0] as f32 * cells.len() as f32 / WIDTH as f32).round() as u32;
-    let edge = edge.clamp(1, size[0].min(size[1]));
+    let edge = size[0].saturating_mul(cells.len() as u32).div_ceil(WIDTH).min(size[0]).min(size[1]).max(1);
     let [width, height] = shrink(&image.mean, size, edge).0;
     let words = cells.iter().flat_map(|cell| &cell.lines).map(|line| Type::Small.width(line)).max().unwrap_or(0);
     let step = width.max(words) + GAP;
