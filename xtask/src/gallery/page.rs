@@ -26,10 +26,11 @@ pub(super) fn page(entries: &[Entry], rows: &BTreeMap<String, Told>, book: &Path
         let _ = write!(
             text,
             "\n## {title}\n\n![{title}](gallery/{name}.png)\n\n{caption}\n\n\
-             ```\ntyndall render scenes/{scene} --spp {}{options} --layers {LAYERS}\n```\n\n\
-             {} × {} pixels, {} samples each, {:.0} CPU seconds ({:.0} s on a machine of two cores that had other work too); the \
+             ```\ntyndall render scenes/{scene} --spp {}{options}{}\n```\n\n\
+             {} × {} pixels, {} samples each, {:.0} CPU seconds ({:.0} s by the clock); the \
              standard error is {:.1} % of a pixel in the mean.\n",
             told.spp,
+            if told.sums.is_empty() { String::new() } else { format!(" --layers {LAYERS}") },
             told.width,
             told.height,
             told.spp,

@@ -22,11 +22,11 @@ pub(super) const ENTRIES: [Entry; 9] = [
     Entry {
         name: "milk",
         scene: "milk/scene.pbrt",
-        spp: 48,
-        options: &[],
+        spp: 512,
+        options: &["--seed", "1"],
         title: "A glass of milk",
         caption: "Milk is white because light collides about two hundred times in it: what has collided once is three \
-                  hundredths of the picture. The side is creamier than the top, and where the milk touches the glass there is \
+                  hundredths of the light. The side is creamier than the top, and where the milk touches the glass there is \
                   no air between them.",
     },
     Entry {
@@ -34,10 +34,10 @@ pub(super) const ENTRIES: [Entry; 9] = [
         scene: "glasses/scene.pbrt",
         spp: 32,
         options: &[],
-        title: "Skimmed milk and whole milk",
-        caption: "Both are mixed from their recipe: 0.1 % of fat on the left, 3.5 % on the right, with the same protein. What is \
-                  left in skimmed milk are casein micelles, small against the wavelength, which scatter blue light more; \
-                  globules of fat scatter all colours alike, and more.",
+        title: "Whole milk and skimmed milk",
+        caption: "Both are mixed from their recipe: 3.5 % of fat on the left, 0.1 % on the right, with nearly the same protein. \
+                  Skimmed milk is greener, for light gets deeper into it and meets more riboflavin. Nearly all of the once \
+                  scattered light is its: casein micelles scatter to all sides, globules of fat forwards.",
     },
     Entry {
         name: "marble-beam",
@@ -94,7 +94,7 @@ pub(super) const ENTRIES: [Entry; 9] = [
     Entry {
         name: "hair",
         scene: "hair/scene.pbrt",
-        spp: 24,
+        spp: 64,
         options: &[],
         title: "Blond hair and dark hair",
         caption: "A fibre of blond hair is nearly clear; its colour is that of many of them. There are no media here, so what is \
