@@ -1,4 +1,4 @@
-//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `words`, `collections`, `bench`, `full`.
+//! Repository chores, one command each: `cargo xtask ci`, `tidy`, `peers`, `words`, `collections`, `gallery`, `bench`, `full`.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // a command line talks to its user
 
 mod bench;
@@ -9,6 +9,7 @@ mod collections;
 mod docs;
 #[cfg(feature = "rays")]
 mod embree;
+mod gallery;
 mod peers;
 mod shell;
 mod tidy;
@@ -39,6 +40,8 @@ enum Chore {
     Words(words::Options),
     /// Other people's scenes: what loads, what renders, what agrees with Mitsuba 3 or with published images
     Collections(collections::Options),
+    /// The pictures of the gallery, with their light taken apart, and their page
+    Gallery(gallery::Options),
     /// The figures that tyndall promises, measured on this machine
     Bench(bench::Options),
     /// All that is known to be worth checking: ci, the slow tests, peers, words, bench
@@ -62,6 +65,7 @@ fn run(chore: Chore) -> anyhow::Result<()> {
         Chore::Peers(options) => peers::run(&options),
         Chore::Words(options) => words::run(&options),
         Chore::Collections(options) => collections::run(&options),
+        Chore::Gallery(options) => gallery::run(&options),
         Chore::Bench(options) => bench::run(&options),
         Chore::Full => {
             ci::run()?;

@@ -12,6 +12,7 @@ mod load;
 mod outputs;
 mod progress;
 mod report;
+mod shrink;
 mod statistics;
 mod tev;
 mod threads;

@@ -198,6 +198,30 @@ fn parts_of_the_light_are_layers_of_the_image() {
     assert!(refused("--layers x=CV'mlk'L").contains("nothing in the scene is called 'mlk'"));
 }
 
+/// Groups of layers add up to the image; what is missing is told; an image without layers is an error that says what to do.
+#[test]
+fn the_layers_of_an_image_are_told_in_groups_that_add_up() {
+    let desk = Desk::with_ball("groups");
+    desk.render("--layers emission,direct,indirect,orders:1", "whole.exr");
+    let told = |arguments: &str| desk.tyndall(&format!("layers {arguments}"));
+    let whole = told("whole.exr --check --strips whole");
+    let text = String::from_utf8_lossy(&whole.stdout).into_owned();
+    assert!(whole.status.success(), "{text}{}", err(&whole));
+    assert!(
+        text.starts_with("all = emission ") && text.contains("\nall = order0 ") && !text.contains("rest"),
+        "{text}"
+    );
+    assert!(desk.path("whole-ways.png").exists() && desk.path("whole-orders.png").exists());
+    desk.render("--layers direct", "part.exr");
+    let part = told("part.exr --check");
+    assert!(String::from_utf8_lossy(&part.stdout).contains(" + rest "));
+    assert_eq!(part.status.code(), Some(1));
+    desk.render("", "none.exr");
+    let none = told("none.exr --page none.html");
+    assert_eq!(none.status.code(), Some(2));
+    assert!(err(&none).contains("none.exr has no layers of light") && !desk.path("none.html").exists());
+}
+
 #[test]
 fn statistics_go_to_standard_output_alone() {
     let desk = Desk::with_ball("json");

@@ -14,7 +14,7 @@ use ::exr::prelude::{
 };
 use tyndall::film::Crop;
 
-use super::{FilmError, Image, Metadata, ROUNDING_F32, save};
+use super::{Channel, FilmError, Image, Metadata, ROUNDING_F32, save};
 
 /// More pixels than this are taken for a damaged header, not for an image.
 const MOST_PIXELS: usize = 1 << 30;
@@ -61,7 +61,8 @@ pub fn write(path: &Path, image: &Image) -> Result<(), FilmError> {
 }
 
 /// Reads an image of tyndall's or of another program's: `R`, `G`, `B` (or `Y` for all three) of the first part that has
-/// them, or else of its first layer that does; without standard errors and settings if it tells none.
+/// them, or else of its first layer that does, and beside them all other channels in full resolution; without standard
+/// errors and settings if it tells none.
 ///
 /// # Errors
 /// The file cannot be read, is damaged, or holds no such channels.
@@ -98,7 +99,7 @@ fn decode(bytes: &[u8]) -> Result<Image, String> {
         crop,
         mean: gather(mean, layer.size),
         standard_error,
-        layers: Vec::new(),
+        layers: other_channels(layer),
         rounding: if half { 1.0 / 2048.0 } else { ROUNDING_F32 },
         metadata: Metadata::from_entries(|name| text_attribute(&layer.attributes.other, name)),
     })
@@ -141,6 +142,15 @@ fn find_channels<'a>(
         (channel.sample_data.len() == layer.size.area()).then_some(&channel.sample_data)
     };
     Some([find("R")?, find("G")?, find("B")?])
+}
+
+/// What the file holds beside mean and standard error.
+fn other_channels(layer: &FlatLayer) -> Vec<Channel> {
+    let own = |name: &str| ["R", "G", "B"].contains(&name.strip_prefix("stderr.").unwrap_or(name));
+    let channels = layer.channel_data.list.iter().filter(|channel| channel.sample_data.len() == layer.size.area());
+    let named = channels.map(|channel| (channel.name.to_string(), &channel.sample_data));
+    let others = named.filter(|(name, _)| !own(name));
+    others.map(|(name, samples)| Channel { name, values: samples.values_as_f32().collect() }).collect()
 }
 
 fn gather(channels: [&FlatSamples; 3], size: Vec2<usize>) -> Vec<[f32; 3]> {
@@ -202,10 +212,7 @@ fn rec_709() -> Chromaticities {
 mod tests {
     use tyndall::film::Film;
 
-    use super::{
-        super::{Channel, save::tests::scratch},
-        *,
-    };
+    use super::{super::save::tests::scratch, *};
 
     fn sample_image() -> Image {
         let mut film = Film::new(23, 17, Crop { min: (3, 2), max: (20, 15) });
@@ -241,8 +248,11 @@ mod tests {
 
     /// Infinite standard errors (pixels of one sample) included.
     #[test]
-    fn an_image_comes_back_bit_by_bit_with_its_errors_crop_and_settings() {
-        let image = sample_image();
+    fn an_image_comes_back_bit_by_bit_with_its_errors_layers_crop_and_settings() {
+        let mut image = sample_image();
+        image.layers = ["direct.B", "stderr.direct.B"]
+            .map(|name| Channel { name: name.into(), values: image.mean.iter().map(|p| p[1] / 3.0).collect() })
+            .into();
         assert!(image.standard_error.as_ref().unwrap().iter().any(|se| se[0].is_infinite()));
         let back = decode(&bytes_of(&image, "exr-round")).unwrap();
         assert_eq!(back.metadata, image.metadata);

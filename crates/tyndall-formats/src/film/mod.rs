@@ -35,7 +35,7 @@ pub struct Image {
     pub mean: Vec<[f32; 3]>,
     /// Standard errors of the means; `None` if the file tells none.
     pub standard_error: Option<Vec<[f32; 3]>>,
-    /// What the film recorded beside light, by the names of channels. Not read back from files.
+    /// What the film recorded beside the image, by the names of channels.
     pub layers: Vec<Channel>,
     /// Largest relative error by which storing a value rounded it: 2⁻²⁴ for 32-bit floats, 2⁻¹¹ for 16-bit ones.
     pub rounding: f32,

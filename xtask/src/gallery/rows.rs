@@ -1,0 +1,103 @@
+//! What hangs in the gallery.
+
+/// A picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Entry {
+    /// Of its files
+    pub(super) name: &'static str,
+    /// In `scenes/`
+    pub(super) scene: &'static str,
+    /// Samples a pixel, of which a call can take more
+    pub(super) spp: u32,
+    /// Further arguments of `tyndall render`
+    pub(super) options: &'static [&'static str],
+    /// Of its section
+    pub(super) title: &'static str,
+    /// What to look at; a paragraph of Markdown
+    pub(super) caption: &'static str,
+}
+
+/// All of them, in the order of the page.
+pub(super) const ENTRIES: [Entry; 9] = [
+    Entry {
+        name: "milk",
+        scene: "milk/scene.pbrt",
+        spp: 512,
+        options: &["--seed", "1"],
+        title: "A glass of milk",
+        caption: "Milk is white because light collides about two hundred times in it: what has collided once is three \
+                  hundredths of the light. The side is creamier than the top, and where the milk touches the glass there is \
+                  no air between them.",
+    },
+    Entry {
+        name: "glasses",
+        scene: "glasses/scene.pbrt",
+        spp: 32,
+        options: &[],
+        title: "Whole milk and skimmed milk",
+        caption: "Both are mixed from their recipe: 3.5 % of fat on the left, 0.1 % on the right, with nearly the same protein. \
+                  Skimmed milk is greener, for light gets deeper into it and meets more riboflavin. Nearly all of the once \
+                  scattered light is its: casein micelles scatter to all sides, globules of fat forwards.",
+    },
+    Entry {
+        name: "marble-beam",
+        scene: "marble/beam.pbrt",
+        spp: 384,
+        options: &[],
+        title: "Marble under a beam",
+        caption: "A cube of 40 mm. The beam is 20 mm wide and meets one face near an edge: light spreads in the stone and comes \
+                  out around the spot and on the other faces.",
+    },
+    Entry {
+        name: "marble-soft",
+        scene: "marble/soft.pbrt",
+        spp: 256,
+        options: &[],
+        title: "Marble under soft light",
+        caption: "The same cube under a large lamp: edges glow, and the shaded face is not dark, for light comes through.",
+    },
+    Entry {
+        name: "fog",
+        scene: "fog/scene.pbrt",
+        spp: 128,
+        options: &[],
+        title: "Shafts of light",
+        caption: "Sun through four tall windows into a hall full of fog. The shafts are light that the fog has scattered once; \
+                  the haze around them has been scattered more often.",
+    },
+    Entry {
+        name: "cornell-empty",
+        scene: "cornell/empty.pbrt",
+        spp: 64,
+        options: &[],
+        title: "Cornell box, empty",
+        caption: "Nothing scatters but walls, so all light is of order 0 in media, and the colours of the walls are on the \
+                  blocks by indirect light.",
+    },
+    Entry {
+        name: "cornell-foggy",
+        scene: "cornell/foggy.pbrt",
+        spp: 128,
+        options: &[],
+        title: "Cornell box, foggy",
+        caption: "Fog with a mean free path as long as the room: the lamp has a halo of light that was scattered once, and \
+                  shadows fill.",
+    },
+    Entry {
+        name: "cornell-milky",
+        scene: "cornell/milky.pbrt",
+        spp: 96,
+        options: &[],
+        title: "Cornell box, milky",
+        caption: "Thin milk: the blocks are gone, and what is left of the walls is a tint.",
+    },
+    Entry {
+        name: "hair",
+        scene: "hair/scene.pbrt",
+        spp: 64,
+        options: &[],
+        title: "Blond hair and dark hair",
+        caption: "A fibre of blond hair is nearly clear; its colour is that of many of them. There are no media here, so what is \
+                  told apart is direct and indirect light: see [Hair](hair.md).",
+    },
+];
