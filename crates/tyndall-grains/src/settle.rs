@@ -183,7 +183,7 @@ impl Bodies {
             let radius = (grain.radius / self.unit * (1.0 + SKIN)) as f32;
             let grown =
                 self.polyhedron.as_ref().and_then(|body| body.clone().scaled(single(DVec3::splat(radius.into()))));
-            let shape = grown.map_or_else(|| SharedShape::ball(radius), |body| SharedShape::new(body));
+            let shape = grown.map_or_else(|| SharedShape::ball(radius), SharedShape::new);
             let turn = Rotation::from_array(grain.turn.to_array().map(|x| x as f32));
             let body = RigidBodyBuilder::dynamic()
                 .pose(Pose::from_parts(single(grain.centre / self.unit), turn))

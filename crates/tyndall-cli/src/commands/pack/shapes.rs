@@ -25,8 +25,7 @@ pub(super) fn form(text: &str) -> anyhow::Result<Form> {
 /// The body in a file, if the text has the name of one.
 fn solid(text: &str) -> anyhow::Result<Option<Solid>> {
     let file = Path::new(text);
-    let stem = if text.ends_with(".gz") { file.with_extension("") } else { file.to_owned() };
-    let mesh = match stem.extension().and_then(|ending| ending.to_str()) {
+    let mesh = match file.extension().and_then(|ending| ending.to_str()) {
         Some("ply") => read_ply(file)?,
         Some("obj") => read_obj(file)?,
         Some("serialized") => read_serialized(file, 0)?,
