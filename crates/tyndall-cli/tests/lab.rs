@@ -171,6 +171,7 @@ fn what_cannot_be_measured_is_refused() {
         (&["gonio", "--phase", "nan"], "between -1 and 1"),
         (&["gonio", "--grain", "n=-1"], "refractive index"),
         (&["gonio", "--grain", "n=1.5 d=2"], "no `d`"),
+        (&["gonio", "--grain", "n=1.5", "--mesh", "junk.ply"], "junk.ply"),
         (&["gonio", "--phase", "0.5", "--angle", "90"], "less than 90"),
         (&["gonio", "--phase", "0.5", "--rows", "1"], "2..=256"),
     ];

@@ -25,6 +25,28 @@ fn a_pack_renders_at_once_and_is_the_same_again() {
     assert!(rendered.status.success(), "{rendered:?}");
 }
 
+/// A cube, closed, seen from outside.
+const CUBE: &str = "v -4 -4 0\nv 4 -4 0\nv 4 4 0\nv -4 4 0\nv -4 -4 8\nv 4 -4 8\nv 4 4 8\nv -4 4 8\n\
+    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+#[test]
+fn grains_of_any_shape_settle_in_a_mesh_and_render() {
+    let desk = Desk::new("pack-settle");
+    std::fs::write(desk.0.join("jar.obj"), CUBE).unwrap();
+    for (grain, shape) in [("ellipsoid:1:1:2", "Shape \"sphere\""), ("jar.obj", "trianglemesh")] {
+        let settle = ["--settle", "--count", "12", "--radius", "0.9", "--material", "green", "-o", "s.pbrt"];
+        let packed = tyndall(&desk, &[&["pack", "jar.obj", "--grain", grain], &settle[..]].concat());
+        let told = String::from_utf8_lossy(&packed.stdout);
+        // 12 · 4π/3 · 0.9³ / 512
+        assert!(packed.status.success() && told.contains("packing fraction   0.0715"), "{packed:?}");
+        assert!(told.contains("at rest") && told.contains("0 taken out"), "{told}");
+        let scene = std::fs::read_to_string(desk.0.join("s.pbrt")).unwrap();
+        assert!(scene.contains(shape) && scene.contains("Rotate") && scene.contains("sigma_a"), "{scene}");
+        let rendered = tyndall(&desk, &["render", "s.pbrt", "--spp", "1"]);
+        assert!(rendered.status.success(), "{rendered:?}");
+    }
+}
+
 #[test]
 fn what_cannot_be_packed_ends_with_status_2() {
     let desk = Desk::new("pack-hostile");
@@ -33,6 +55,26 @@ fn what_cannot_be_packed_ends_with_status_2() {
     {
         let packed = tyndall(&desk, &["pack", container, "--radius", radius, "--count", count, "-o", "x.pbrt"]);
         assert_eq!(packed.status.code(), Some(2), "{packed:?}");
+        assert!(!desk.0.join("x.pbrt").exists());
+    }
+    std::fs::write(desk.0.join("open.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let cases: &[(&[&str], &str)] = &[
+        (&["open.obj"], "is not closed"),
+        (&["none.ply"], "none.ply"),
+        (&["box:9:9:9", "--grain", "open.obj"], "is not closed"),
+        (&["box:9:9:9", "--grain", "ellipsoid:1:1:99"], "at most 10 times"),
+        (&["box:9:9:9", "--grain", "ellipsoid:1:1:nan"], "axes of a grain"),
+        (&["box:9:9:9", "--friction", "0.1"], "--settle"),
+        (&["box:9:9:9", "--settle", "--friction", "nan"], "friction"),
+        (&["box:9:9:9", "--settle", "--count", "400000"], "at most 300 thousand"),
+        (&["box:9:9:9", "--settle", "--radius", "lognormal:0.1:0.9"], "tenfold"),
+    ];
+    for (arguments, told) in cases {
+        let radius: &[&str] = if arguments.contains(&"--radius") { &[] } else { &["--radius", "1"] };
+        let packed = tyndall(&desk, &[&["pack"], *arguments, radius, &["-o", "x.pbrt"]].concat());
+        let says = String::from_utf8_lossy(&packed.stderr);
+        assert_eq!(packed.status.code(), Some(2), "{arguments:?}: {says}");
+        assert!(says.contains(told) && !says.contains("panicked"), "{arguments:?} should tell `{told}`: {says}");
         assert!(!desk.0.join("x.pbrt").exists());
     }
 }

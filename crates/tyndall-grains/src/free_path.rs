@@ -38,9 +38,10 @@ impl Pack {
             .filter_map(|index| {
                 let mut rng = Rng::for_sample((1, 0), index, seed);
                 let (origin, direction) = line(reach, &mut rng);
-                let span = self.container.chord(origin, direction)?;
-                let (met, inside) = self.grid.along(&self.grains, origin, direction, span);
-                Some((span.1 - span.0 - inside, f64::from(met)))
+                let spans = self.container.spans(origin, direction);
+                let ends = (spans.first()?.0, spans.last()?.1);
+                let (met, inside) = self.grid.along(&self.grains, origin, direction, ends);
+                Some((spans.iter().map(|(near, far)| far - near).sum::<f64>() - inside, f64::from(met)))
             })
             .collect();
         let (outside, met) = measured.iter().fold((0.0, 0.0), |sum, line| (sum.0 + line.0, sum.1 + line.1));

@@ -1,12 +1,18 @@
-//! Packs of round grains: a [`container`], [`radii`], random sequential addition ([`pack`]), and the free path of light
-//! between the grains, by rays and by formula ([`free_path`]). Lengths have whatever unit the caller has.
+//! Packs of grains: a [`container`], a [`form`], [`radii`], random sequential addition ([`pack`]) or settling ([`settle`]), the
+//! part of space that is grain ([`bulk`]), and the free path of light between the grains, by rays and by formula
+//! ([`free_path`]). Lengths have whatever unit the caller has.
 
+pub mod bulk;
 pub mod container;
+pub mod form;
 pub mod free_path;
 pub mod pack;
 pub mod radii;
+pub mod settle;
+pub mod solid;
 
 mod grid;
+mod walls;
 
 use std::ops::RangeInclusive;
 
@@ -47,6 +53,28 @@ pub enum GrainError {
         /// Least that is allowed.
         least: f64,
     },
+    /// Not one has found a place.
+    #[error(
+        "no grain finds a place in the container: it is too narrow for the shape of the grains, or packing was interrupted"
+    )]
+    NoRoom,
+    /// A mesh that bounds no body.
+    #[error("the mesh {0}")]
+    Mesh(String),
+    /// Rigid bodies of such different sizes cannot be followed together.
+    #[error("grains that settle may differ tenfold in radius, not from {smallest} to {largest}")]
+    Varied {
+        /// Smallest radius asked for.
+        smallest: f64,
+        /// Largest.
+        largest: f64,
+    },
+    /// More than [`settle::MOST`].
+    #[error("{0} grains: at most 300 thousand can settle; random sequential addition packs 10 million")]
+    Settling(u64),
+    /// A coefficient of friction.
+    #[error("friction of {0}: between 0 and 10 is possible")]
+    Friction(f64),
     /// More grains than [`pack::MOST`], or none.
     #[error("{0} grains: between 1 and 10 million can be packed")]
     Count(u64),

@@ -45,6 +45,14 @@ impl Radii {
         }
     }
 
+    /// The smallest.
+    pub fn smallest(&self) -> f64 {
+        match *self {
+            Self::Mono(radius) | Self::Uniform(radius, _) => radius,
+            Self::LogNormal(median, sigma) => median * (-CUT * sigma).exp(),
+        }
+    }
+
     /// Draws one.
     pub(crate) fn draw(&self, rng: &mut Rng) -> f64 {
         match *self {

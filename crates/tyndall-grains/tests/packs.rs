@@ -1,9 +1,20 @@
 //! Packs, and the free paths in them.
 
-use tyndall_grains::{GrainError, container::Container, pack::Pack, radii::Radii};
+use tyndall_grains::{
+    GrainError,
+    container::Container,
+    form::Form,
+    pack::{Pack, Recipe},
+    radii::Radii,
+};
+
+fn recipe(container: &str, radii: &str, count: u64) -> Recipe {
+    let (container, radii) = (container.parse().unwrap(), radii.parse().unwrap());
+    Recipe { container, form: Form::Ball, radii, count, seed: 7 }
+}
 
 fn pack(container: &str, radii: &str, count: u64) -> Pack {
-    Pack::fill(container.parse().unwrap(), radii.parse().unwrap(), count, 7, |_| true).unwrap()
+    Pack::fill(&recipe(container, radii, count), |_| true).unwrap()
 }
 
 #[test]
@@ -34,14 +45,27 @@ fn rays_go_as_far_between_grains_as_stereology_says() {
     }
 }
 
-/// The row of `granular_packing_free_path.csv` at a packing fraction of 0.2: 16/3 radii.
+/// The rows of `granular_packing_free_path.csv` that random sequential addition reaches: balls of radius 1 in a box of volume
+/// 13824, as many as make the packing fraction.
 #[test]
-fn a_fifth_of_equal_balls_leaves_free_paths_of_five_and_a_third_radii() {
-    let container: Container = "box:20:20:20".parse().unwrap();
-    let count = 382; // φ = 0.2 · 8000 / (4π/3) = 381.97 balls of radius 1
-    let pack = Pack::fill(container, Radii::Mono(1.0), count, 1, |_| true).unwrap();
-    assert!((pack.fraction() - 0.2).abs() < 2e-5);
-    assert!((pack.free_path_by_formula() / 5.33333333 - 1.0).abs() < 2e-4, "{}", pack.free_path_by_formula());
+fn free_paths_between_equal_balls_are_those_of_the_table() {
+    let table = include_str!("../data/granular_packing_free_path.csv");
+    let rows = table.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let rows = rows.map(|row| row.split(',').map(|number| number.parse().unwrap()).collect::<Vec<f64>>());
+    let mut checked = 0;
+    for row in rows.filter(|row| row[0] <= 0.3) {
+        let count = (row[0] * 13824.0 / (4.0 / 3.0 * std::f64::consts::PI)).round();
+        let pack = pack("box:24:24:24", "1", count as u64);
+        assert_eq!(pack.grains.len() as f64, count);
+        // The count is rounded: l ∝ (1 − φ) / φ.
+        let phi = pack.fraction();
+        let expected = row[1] * (1.0 - phi) / phi * row[0] / (1.0 - row[0]);
+        let rays = pack.free_path_by_rays(20_000, 3).unwrap();
+        assert!((pack.free_path_by_formula() / expected - 1.0).abs() < 1e-7, "{row:?}");
+        assert!(((rays.mean - expected) / rays.error).abs() < 4.0, "{row:?}: {rays:?} for {expected}");
+        checked += 1;
+    }
+    assert_eq!(checked, 5);
 }
 
 #[test]
@@ -59,7 +83,10 @@ fn what_cannot_be_packed_is_an_error() {
     for text in ["0", "NaN", "uniform:2:1", "lognormal:1:5", "-1", "uniform:1", ""] {
         assert!(text.parse::<Radii>().is_err(), "{text}");
     }
-    let fill = |radius, count| Pack::fill(Container::Sphere(1.0), Radii::Mono(radius), count, 0, |_| true).unwrap_err();
+    let fill = |radius, count| {
+        let recipe = Recipe { radii: Radii::Mono(radius), ..recipe("sphere:1", "1", count) };
+        Pack::fill(&recipe, |_| true).unwrap_err()
+    };
     assert!(matches!(fill(2.0, 5), GrainError::TooLarge { .. }));
     assert!(matches!(fill(1e-30, 5), GrainError::TooSmall { .. }));
     assert_eq!(fill(0.1, 0), GrainError::Count(0));

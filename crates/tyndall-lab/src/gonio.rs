@@ -6,6 +6,7 @@
 //! | [`Specimen::Phase`], a phase function | along +z | sampled and evaluated, and whether they agree |
 //! | [`Specimen::Slab`], plane layers | from above, at an angle | what leaves after collisions |
 //! | [`Specimen::Grain`], a ball as wide as the beam | along +z | what leaves, and by how many segments of the way were inside |
+//! | [`Specimen::Body`], a closed mesh, lit where it is | along +z, the mesh's −z | the same |
 //!
 //! A [`Map`] has columns of equal azimuth and rows of equal height on the unit sphere (Lambert's cylindrical projection):
 //! the cosine to +z falls from 1 in the upper row to −1 in the lower one, azimuth 0 (+x, where light that is mirrored goes)
@@ -21,12 +22,13 @@
 //! are taken together.
 
 mod agreement;
+mod body;
 mod grain;
 mod surface;
 
 use std::f32::consts::{PI, TAU};
 
-use tyndall::{math::Vec3, phase::Phase, sampling::rng::Rng, tally::Tally};
+use tyndall::{math::Vec3, phase::Phase, sampling::rng::Rng, shape::Mesh, tally::Tally};
 
 pub use agreement::Agreement;
 pub use grain::{Exact, exact as exact_grain};
@@ -49,6 +51,8 @@ pub enum Specimen {
     Slab(slab::Setup),
     /// A ball of radius 1 [length].
     Grain(Substance),
+    /// A grain of any shape.
+    Body(Box<Mesh>, Substance),
 }
 
 /// Directions, told apart.
@@ -163,10 +167,13 @@ pub fn measure(
         }
         Specimen::Grain(substance) => {
             let scene = ball::scene(substance, 1.0, Source::Beam)?;
-            let recorder =
-                || Recorder { totals: Totals::new(layout), turn: -1.0, travel: Some(Vec3::Z), keep_unscattered: true };
             let ray = |photon| ball::ray_of(Source::Beam, 1.0, photon, seed);
-            (layout, shoot(&scene, photons, seed, ray, recorder, look))
+            (layout, shoot(&scene, photons, seed, ray, || Recorder::of_grain(layout), look))
+        }
+        Specimen::Body(mesh, substance) => {
+            let scene = body::scene(mesh, substance)?;
+            let ray = |photon| body::ray(&scene, photon, seed);
+            (layout, shoot(&scene, photons, seed, ray, || Recorder::of_grain(layout), look))
         }
     };
     Ok(layout.read(&sums))
@@ -321,6 +328,12 @@ struct Recorder {
     travel: Option<Vec3>,
     /// Whether light without a collision is in the map.
     keep_unscattered: bool,
+}
+
+impl Recorder {
+    fn of_grain(layout: Layout) -> Self {
+        Self { totals: Totals::new(layout), turn: -1.0, travel: Some(Vec3::Z), keep_unscattered: true }
+    }
 }
 
 impl Detector for Recorder {

@@ -1,36 +1,55 @@
 //! `tyndall pack CONTAINER`: grains in a container, what part of it they fill, how far light goes between them, and a scene.
 
+mod material;
 mod scene;
+mod shapes;
 
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use tyndall_formats::film::save;
-use tyndall_grains::{container::Container, pack::Pack, radii::Radii};
+use tyndall_grains::{
+    pack::{Pack, Recipe},
+    radii::Radii,
+    settle::settle,
+};
 
+use self::material::Material;
 use crate::interrupt;
 
 /// Lines that measure the mean free path: a standard error below a percent.
 const LINES: u32 = 100_000;
 
-/// Fills a container with round grains.
+/// Fills a container with grains.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   tyndall pack sphere:8 --radius 0.5 --count 1500 -o ball.pbrt
   tyndall pack box:20:20:10 --radius lognormal:0.4:0.3 --count 5000 --material salt -o salt.pbrt
+  tyndall pack cylinder:10:20 --radius 1 --count 5000 --settle -o poured.pbrt
+  tyndall pack jar.ply --grain ellipsoid:1:1:2 --radius 0.5 --settle --material green -o jar.pbrt
 
-Ctrl-C ends the packing and keeps what has been packed. Lengths are millimetres.")]
+A radius is that of the ball with the volume of the grain. Ctrl-C ends the packing and keeps what has been packed.
+Lengths are millimetres.")]
 pub(crate) struct PackOptions {
-    /// What to fill: box:X:Y:Z (edges), sphere:R, cylinder:R:H
-    container: Container,
+    /// What to fill: box:X:Y:Z (edges), sphere:R, cylinder:R:H, or a closed mesh (.ply, .obj, .serialized)
+    container: String,
     /// Radii of the grains: R, uniform:MIN:MAX, lognormal:MEDIAN:SIGMA
     #[arg(long)]
     radius: Radii,
+    /// Their shape: ball, ellipsoid:A:B:C (proportions of its axes), or a closed mesh
+    #[arg(long, default_value = "ball")]
+    grain: String,
     /// How many grains; fewer if the container is full before
     #[arg(long, default_value_t = 1000)]
     count: u64,
+    /// Let them fall and come to rest, instead of random places
+    #[arg(long)]
+    settle: bool,
+    /// Coefficient of friction of grains that settle
+    #[arg(long, value_name = "MU", default_value_t = 0.3, requires = "settle")]
+    friction: f64,
     /// What the grains of the scene are of
     #[arg(long, value_enum, default_value_t = Material::Glass)]
     material: Material,
@@ -42,56 +61,68 @@ pub(crate) struct PackOptions {
     out: Option<PathBuf>,
 }
 
-/// What clear grains are of: refractive index at 589 nm. None of them absorbs visible light over a grain of a millimetre.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Material {
-    /// Crown glass N-BK7, 1.5168 (Schott's data sheet)
-    Glass,
-    /// Sodium chloride, 1.544 (Li 1976)
-    Salt,
-    /// Sucrose, 1.558: the mean of 1.538, 1.565, 1.571 along its axes (CRC Handbook)
-    Sugar,
-    /// Ice, 1.31 (Warren and Brandt 2008)
-    Snow,
-    /// Quartz, 1.544 (Ghosh 1999, ordinary ray)
-    Sand,
-}
-
-impl Material {
-    fn eta(self) -> f64 {
-        match self {
-            Self::Glass => 1.5168,
-            Self::Salt | Self::Sand => 1.544,
-            Self::Sugar => 1.558,
-            Self::Snow => 1.31,
-        }
-    }
-}
-
 pub(crate) fn run(options: &PackOptions) -> anyhow::Result<ExitCode> {
     if let Some(path) = &options.out {
         save::check(path)?;
     }
+    let recipe = Recipe {
+        container: shapes::container(&options.container)?,
+        form: shapes::form(&options.grain)?,
+        radii: options.radius,
+        count: options.count,
+        seed: options.seed,
+    };
     interrupt::listen()?;
     let start = Instant::now();
-    let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {pos} of {len} grains   {eta} left");
-    let bar = ProgressBar::new(options.count).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    let pack = Pack::fill(options.container, options.radius, options.count, options.seed, |grains| {
-        bar.set_position(grains);
-        !interrupt::requested()
-    });
-    bar.finish_and_clear();
-    let pack = pack?;
-    let seconds = start.elapsed().as_secs_f64();
-    println!("grains             {} of {} in {seconds:.2} s", pack.grains.len(), options.count);
+    let (pack, rest) = packed(&recipe, options)?;
+    println!("grains             {} of {} in {:.2} s", pack.grains.len(), options.count, start.elapsed().as_secs_f64());
+    if let Some(rest) = rest {
+        println!("{rest}");
+    }
     println!("packing fraction   {:.5}", pack.fraction());
     println!("mean free path     {:.5} mm by formula", pack.free_path_by_formula());
     if let Some(rays) = pack.free_path_by_rays(LINES, options.seed) {
         println!("                   {:.5} ± {:.5} mm by {LINES} rays", rays.mean, rays.error);
     }
+    if let Some(bulk) = pack.bulk(options.seed) {
+        println!("in the bulk        {:.5} ± {:.5} is grain", bulk.fraction, bulk.error);
+        println!("                   {:.5} mm mean free path", bulk.free_path);
+    }
     if let Some(path) = &options.out {
-        save::replace(path, scene::text(&pack, options.material.eta()).as_bytes())?;
+        save::replace(path, scene::text(&pack, options.material).as_bytes())?;
         println!("scene              {}", path.display());
     }
     Ok(if interrupt::requested() { ExitCode::from(interrupt::EXIT) } else { ExitCode::SUCCESS })
+}
+
+/// The pack, and how much at rest it is if it has settled.
+fn packed(recipe: &Recipe, options: &PackOptions) -> anyhow::Result<(Pack, Option<String>)> {
+    if !options.settle {
+        let bar = bar(recipe.count, "{bar:30} {percent:>3} %  {pos} of {len} grains   {eta} left");
+        let pack = Pack::fill(recipe, |grains| {
+            bar.set_position(grains);
+            !interrupt::requested()
+        });
+        bar.finish_and_clear();
+        return Ok((pack?, None));
+    }
+    let bar = bar(1000, "{bar:30} {percent:>3} %  {msg} grains   about {eta} left");
+    let settled = settle(recipe, options.friction, |progress| {
+        bar.set_message(progress.grains.to_string());
+        bar.set_position((1000.0 * progress.done) as u64);
+        !interrupt::requested()
+    });
+    bar.finish_and_clear();
+    let settled = settled?;
+    let rest = format!(
+        "at rest            to {:.2} % of the speed that lifts a grain by its radius; {} taken out that overlapped or moved",
+        100.0 * settled.unrest,
+        settled.removed
+    );
+    Ok((settled.pack, Some(rest)))
+}
+
+fn bar(length: u64, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(length).with_style(style)
 }

@@ -165,6 +165,29 @@ fn a_grain_scatters_as_geometric_optics_has_it() {
     assert_eq!(exact_grain(&Substance::of_albedo(0.5, 0.0)), None);
 }
 
+/// A cube that light meets straight on one of its faces is a plate: of what enters, `e = exp(−σ_a d)` arrives at the other face,
+/// and each face reflects `F = ((n − 1) / (n + 1))²`, so that `w_0 = F` and `w_p = (1 − F)² F^(p−1) e^p`, to and fro.
+#[test]
+fn a_cube_that_is_lit_straight_on_a_face_is_a_plate() {
+    let (n, sigma_a, edge) = (1.5f64, 0.3, 2.0);
+    let corner = |i: u32| Vec3::from_array([0, 1, 2].map(|bit| if i >> bit & 1 == 1 { 1.0 } else { -1.0 }));
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let indices = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    let mesh = Mesh { positions: (0..8).map(corner).collect(), indices, ..Mesh::default() };
+    let glass = Substance { sigma_a, sigma_s: 0.0, g: 0.0, n };
+    let m = measure(&Specimen::Body(Box::new(mesh.clone()), glass), MAP, 100_000, 5, all).unwrap();
+    let (f, e) = (((n - 1.0) / (n + 1.0)).powi(2), (-sigma_a * edge).exp());
+    let w = |p: i32| if p == 0 { f } else { (1.0 - f).powi(2) * f.powi(p - 1) * e.powi(p) };
+    for (p, found) in m.by_segments.into_iter().enumerate() {
+        assert!(z(found, w(p as i32)).abs() < 4.0, "{p}: {found:?} for {}", w(p as i32));
+    }
+    let (back, on) = ((0..40).step_by(2).map(w).sum::<f64>(), (1..40).step_by(2).map(w).sum::<f64>());
+    assert!(z(m.albedo, back + on).abs() < 4.0 && z(m.upper, on).abs() < 4.0, "{:?} {:?}", m.albedo, m.upper);
+    assert!(z(m.mean_cosine, (on - back) / (on + back)).abs() < 4.0, "{:?}", m.mean_cosine);
+    let open = Mesh { indices: mesh.indices[..10].to_vec(), ..mesh };
+    assert!(measure(&Specimen::Body(Box::new(open), glass), MAP, 10, 0, all).is_err());
+}
+
 /// Rows of the map are the angles of a slab: radiance times cosine, as discrete ordinates have it.
 #[test]
 fn a_slab_shines_as_discrete_ordinates_have_it() {

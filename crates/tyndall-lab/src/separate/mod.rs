@@ -32,7 +32,7 @@ pub use pattern::{Pattern, Projection};
 use glam::{DMat4, Vec3};
 use tyndall::{
     camera::CameraModel,
-    film::Film,
+    film::{Film, Filter},
     light::{Even, Light, LightTable, Projector, Slide},
     lpe::{Names, named},
     math::{Transform, Vec2},
@@ -45,8 +45,8 @@ use crate::world::SetupError;
 
 /// The layer of the film that holds the true direct light.
 const DIRECT: &str = "direct_surface";
-/// How much wider than the camera sees the projector throws \[1\].
-const MARGIN: f32 = 1.1;
+/// How much wider than the camera sees a projector throws that stands at it \[1\].
+pub const MARGIN: f32 = 1.1;
 
 /// Where the projector stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,8 +69,6 @@ pub struct Outcome {
     /// How much brighter direct light would be, by luminance and on average, if one and the same noisy picture said which is
     /// the greatest and how great it is \[radiance\]; of checkerboards.
     pub bias: Option<f64>,
-    /// How many patterns were seen.
-    pub seen: u32,
 }
 
 impl Stage {
@@ -84,9 +82,14 @@ impl Stage {
             Place::Camera(offset) => at_camera(&scene, offset)?,
         };
         let Scene { color, mut camera, geometry, mut objects, materials, mut media, .. } = scene;
-        camera.layers.clear();
-        objects.iter_mut().for_each(|object| object.emission = Emission::None);
-        media.iter_mut().for_each(|medium| medium.emission = None);
+        // A pixel should see little of the pattern, and nothing of it with a negative weight.
+        (camera.filter, camera.layers) = (Filter::default(), Vec::new());
+        for object in &mut objects {
+            object.emission = Emission::None;
+        }
+        for medium in &mut media {
+            medium.emission = None;
+        }
         let lights = LightTable::new(vec![Light::Projector(Box::new(projector))]);
         let mut scene = Scene::new(color, camera, geometry, objects, materials, media, lights);
         let layer = named::named(DIRECT).map_err(|_| SetupError::Missing("layer of direct light"))?;
@@ -105,20 +108,18 @@ impl Stage {
     }
 
     /// Throws all patterns. `render` takes a picture of the scene by two halves of its samples, always with the same random
-    /// numbers. If it has none any more, the experiment ends with what it has seen; `None` if that is nothing.
+    /// numbers. `None` if it has none any more: some of the patterns tell nothing.
     pub fn throw(
         &mut self,
         projection: &Projection,
         mut render: impl FnMut(&Scene) -> Option<[Film; 2]>,
     ) -> Option<Outcome> {
-        let camera = &self.0.camera;
-        let mut observed = Observed::new(camera.width as usize * camera.height as usize, projection.dark);
+        let mut observed = Observed::new(projection.dark);
         for number in 0..projection.pattern.count() {
             self.insert(projection.slide(number));
-            let Some(halves) = render(&self.0) else { break };
-            observed.add(&halves, projection.pattern.phase(number));
+            observed.add(&render(&self.0)?, projection.pattern.phase(number));
         }
-        Some(Outcome { parts: observed.parts()?, bias: observed.bias(), seen: observed.seen() })
+        Some(Outcome { parts: observed.parts(), bias: observed.bias() })
     }
 
     fn insert(&mut self, texture: Texture) {
@@ -150,7 +151,7 @@ fn at_camera(scene: &Scene, offset: Vec3) -> Result<Projector, SetupError> {
     let [left, right, bottom, top] = camera.window.map(f32::abs);
     let half = Vec2::new(left.max(right), bottom.max(top)) * MARGIN + offset.truncate().abs() / distance;
     let columns = [axes[0].extend(0.0), axes[1].extend(0.0), axes[2].extend(0.0), position.extend(1.0)];
-    let columns = columns.map(|column| column.as_dvec4());
+    let columns = columns.map(glam::Vec4::as_dvec4);
     let to_world = Transform::new(DMat4::from_cols(columns[0], columns[1], columns[2], columns[3]))
         .ok_or(SetupError::Missing("place for a projector at this camera"))?;
     let intensity = std::f32::consts::PI * distance * distance;

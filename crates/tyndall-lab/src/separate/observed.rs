@@ -152,17 +152,17 @@ impl Record {
 pub(super) struct Observed {
     records: Vec<[Record; 3]>,
     dark: f64,
-    seen: u32,
 }
 
 impl Observed {
-    /// Nothing yet, of so many pixels.
-    pub(super) fn new(pixels: usize, dark: f32) -> Self {
-        Self { records: vec![[Record::Nothing; 3]; pixels], dark: f64::from(dark), seen: 0 }
+    /// Nothing yet.
+    pub(super) fn new(dark: f32) -> Self {
+        Self { records: Vec::new(), dark: f64::from(dark) }
     }
 
     /// Adds a picture, by halves of its samples, under a pattern: a wave of some phase, or a checkerboard.
     pub(super) fn add(&mut self, [first, second]: &[Film; 2], phase: Option<f32>) {
+        self.records.resize(first.pixels.len(), [Record::Nothing; 3]);
         let pixels = first.pixels.iter().zip(&second.pixels);
         for (records, (one, other)) in self.records.iter_mut().zip(pixels) {
             let (means, errors) = ([one.mean(), other.mean()], [one.standard_error(), other.standard_error()]);
@@ -175,26 +175,20 @@ impl Observed {
                 }
             }
         }
-        self.seen += 1;
     }
 
-    /// How many there were.
-    pub(super) fn seen(&self) -> u32 {
-        self.seen
-    }
-
-    /// Direct and global light; `None` before the first pattern.
-    pub(super) fn parts(&self) -> Option<Parts> {
+    /// Direct and global light.
+    pub(super) fn parts(&self) -> Parts {
         let each = |part: usize, of: fn(&Part) -> f64| -> Vec<[f32; 3]> {
             let pixel = |records: &[Record; 3]| records.map(|record| of(&record.parts(self.dark)[part]) as f32);
             self.records.iter().map(pixel).collect()
         };
-        (self.seen > 0).then(|| Parts {
+        Parts {
             direct: each(0, |part| part.value),
             global: each(1, |part| part.value),
             direct_error: each(0, |part| part.error),
             global_error: each(1, |part| part.error),
-        })
+        }
     }
 
     /// How much brighter direct light would be by the plain extremes: the mean of its luminance.

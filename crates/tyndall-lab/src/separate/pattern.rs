@@ -43,6 +43,22 @@ impl Pattern {
         Self::Checkerboard { square, step, shifts: (2 * square.max(1)).div_ceil(step).min(5) }
     }
 
+    /// How much of the projector a pixel may cover, so that it is wholly lit in some image and wholly dark in another
+    /// [pixels of the projector]: a square less the greatest gap between shifts, round the two squares in which the pattern
+    /// repeats itself. Of waves an eighth, over which a pixel sees 0.974 of their amplitude.
+    pub fn widest_pixel(&self) -> f64 {
+        match *self {
+            Self::Checkerboard { square, step, shifts } => {
+                let mut stops: Vec<u32> = (0..shifts).map(|n| n * step % (2 * square)).collect();
+                stops.sort_unstable();
+                let round = stops.first().map(|first| first + 2 * square);
+                let gaps = stops.iter().zip(stops.iter().skip(1).chain(&round)).map(|(a, b)| b - a);
+                f64::from(square.saturating_sub(gaps.max().unwrap_or(0)))
+            }
+            Self::Waves { period, .. } => f64::from(period) / 8.0,
+        }
+    }
+
     /// How many images there are.
     pub fn count(&self) -> u32 {
         match *self {
@@ -85,6 +101,11 @@ impl Pattern {
                 sizes("the step of a shift", step)?;
                 within("the number of shifts along an axis", f64::from(shifts), "between 2 and 32", |n| {
                     (2.0..=32.0).contains(&n)
+                })?;
+                within("the step of a shift", f64::from(step), "at most a square", |n| n <= f64::from(square))?;
+                let way = f64::from(step * (shifts - 1));
+                within("the way of all shifts", way, "a square at least, or some pixels stay lit or dark", |way| {
+                    way >= f64::from(square)
                 })
             }
             Self::Waves { period, phases } => {
@@ -154,6 +175,26 @@ impl Projection {
 mod tests {
     use super::*;
 
+    /// In a row of pixels as wide as they may be, and wherever they begin, each is wholly lit in some image and wholly dark in
+    /// another; not so in a row of pixels that are wider.
+    #[test]
+    fn pixels_as_wide_as_they_may_be_are_wholly_lit_once_and_wholly_dark_once() {
+        for square in [4, 8, 16, 64] {
+            let pattern = Pattern::checkerboard(square);
+            let Pattern::Checkerboard { step, shifts, .. } = pattern else { panic!("a checkerboard") };
+            let works = |width: f64| {
+                (0..16 * square).map(|i| f64::from(i) / 8.0).all(|from| {
+                    let cell = |at: f64, n: u32| ((at + f64::from(n * step)) / f64::from(square)).floor() as u32 % 2;
+                    let whole = |n: &u32| cell(from, *n) == cell(from + width - 1e-9, *n);
+                    let seen: Vec<u32> = (0..shifts).filter(whole).map(|n| cell(from, n)).collect();
+                    seen.contains(&0) && seen.contains(&1)
+                })
+            };
+            let widest = pattern.widest_pixel();
+            assert!(widest > 0.0 && works(widest) && !works(widest + 0.25), "{square}: {widest}");
+        }
+    }
+
     /// Each pixel is lit in some shift and dark in another, for every size; and over all shifts nearly half of the time.
     #[test]
     fn every_pixel_is_lit_once_and_dark_once() {
@@ -166,6 +207,7 @@ mod tests {
         }
         assert_eq!(Pattern::checkerboard(8), Pattern::PAPER);
         assert_eq!(Pattern::PAPER.count(), 25);
+        assert_eq!(Pattern::PAPER.widest_pixel(), 4.0);
     }
 
     #[test]
@@ -184,6 +226,8 @@ mod tests {
         assert!(new(Pattern::PAPER, [8, 8], 1.0) && new(Pattern::PAPER, [8, 8], f32::NAN));
         assert!(new(Pattern::PAPER, [8, 100_000], 0.0) && new(Pattern::Waves { period: 8, phases: 2 }, [8, 8], 0.0));
         assert!(new(Pattern::Checkerboard { square: 8, step: 3, shifts: 1 }, [8, 8], 0.0));
+        assert!(new(Pattern::Checkerboard { square: 8, step: 1, shifts: 2 }, [8, 8], 0.0));
+        assert!(new(Pattern::Checkerboard { square: 8, step: 9, shifts: 5 }, [8, 8], 0.0));
         assert!(new(Pattern::Waves { period: 2, phases: 3 }, [8, 8], 0.0));
     }
 }

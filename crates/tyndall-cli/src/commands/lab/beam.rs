@@ -131,7 +131,7 @@ fn body(options: &BeamOptions) -> anyhow::Result<Body> {
     })
 }
 
-fn mesh(file: &Path, scale: f64) -> anyhow::Result<Mesh> {
+pub(super) fn mesh(file: &Path, scale: f64) -> anyhow::Result<Mesh> {
     let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let read = match ending.as_str() {
         "ply" => read_ply(file)?,

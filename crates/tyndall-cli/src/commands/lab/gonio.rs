@@ -55,6 +55,11 @@ fn specimen(options: &GonioOptions) -> anyhow::Result<(String, Specimen)> {
     if let Some(phase) = options.phase.clone() {
         return Ok((format!("a phase function of mean cosine {}", phase.mean_cosine()), Specimen::Phase(phase)));
     }
+    if let (Some(grain), Some(file)) = (options.grain, &options.mesh) {
+        let title =
+            format!("{} of index {}, σ_a = {}, σ_s = {}", file.display(), grain.n, grain.sigma_a, grain.sigma_s);
+        return Ok((title, Specimen::Body(Box::new(super::beam::mesh(file, 1.0)?), grain)));
+    }
     if let Some(grain) = options.grain {
         let title = format!("a grain of index {}, σ_a R = {}, σ_s R = {}", grain.n, grain.sigma_a, grain.sigma_s);
         return Ok((title, Specimen::Grain(grain)));
@@ -163,7 +168,7 @@ fn layers(agreement: &Agreement) -> Vec<Channel> {
 fn tell(title: String, specimen: &Specimen, map: Map, m: &Measured, decades: f64) -> Report {
     let [upper, lower] = match specimen {
         Specimen::Surface(_) | Specimen::Slab(_) => ["reflected side", "far side"],
-        Specimen::Phase(_) | Specimen::Grain(_) => ["forward", "backward"],
+        Specimen::Phase(_) | Specimen::Grain(_) | Specimen::Body(..) => ["forward", "backward"],
     };
     let mut figures = vec![
         figure("albedo", "", m.albedo),
@@ -178,6 +183,7 @@ fn tell(title: String, specimen: &Specimen, map: Map, m: &Measured, decades: f64
             figures[4].exact = Some(f64::from(phase.mean_cosine()));
         }
         Specimen::Grain(grain) => tell_grain(&mut figures, m, exact_grain(grain)),
+        Specimen::Body(..) => tell_grain(&mut figures, m, None),
         Specimen::Surface(_) | Specimen::Slab(_) => {}
     }
     let agreement = m.agreement.as_ref();

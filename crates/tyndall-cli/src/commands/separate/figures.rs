@@ -16,9 +16,8 @@ pub(super) struct Figures {
     pub(super) pattern: String,
     /// Side of a square, or half a wave [pixels of the projector].
     pub(super) size: f64,
-    /// Of how many patterns there are, how many were seen.
+    /// How many patterns there were.
     patterns: u32,
-    seen: u32,
     /// All light.
     all: f64,
     true_direct: Estimate,
@@ -27,7 +26,7 @@ pub(super) struct Figures {
     separated_global: Estimate,
     /// Root of the mean square over pixels and channels of separated less true direct light, of the mean of all light \[1\].
     pub(super) rms: f64,
-    /// What the standard errors of both make of that \[1\].
+    /// At most what the standard errors of both make of that: they share random numbers \[1\].
     pub(super) noise: f64,
     /// What noise would add to direct light if the same samples chose the greatest and measured it, of the mean of all light
     /// \[1\]; of checkerboards.
@@ -53,7 +52,6 @@ impl Figures {
             pattern,
             size,
             patterns: projection.pattern.count(),
-            seen: outcome.seen,
             all,
             true_direct: estimate(&truth.direct, &truth.direct_error),
             separated_direct: estimate(&parts.direct, &parts.direct_error),
@@ -75,20 +73,19 @@ pub(super) fn table(figures: &[Figures]) -> String {
                 writeln!(out, "{:<38} {:>23} {:>23} {:>8} {:>8} {:>8}", "", "direct", "global", "rms", "noise", "bias");
             let _ = writeln!(out, "{:<38} {:>23} {:>23}", "truth", told(f.true_direct), told(f.true_global));
         }
-        let short = if f.seen < f.patterns { format!(" ({} of {})", f.seen, f.patterns) } else { String::new() };
         let bias = f.bias.map_or(String::new(), percent);
         let (direct, global) = (told(f.separated_direct), told(f.separated_global));
         let _ = writeln!(
             out,
             "{:<38} {direct:>23} {global:>23} {:>8} {:>8} {bias:>8}",
-            format!("{}{short}", f.pattern),
+            f.pattern,
             percent(f.rms),
             percent(f.noise),
         );
     }
     let _ = write!(
         out,
-        "\nMeans of luminance. rms: of separated less true direct light, of the mean of all light; noise: what standard errors make \
+        "\nMeans of luminance. rms: of separated less true direct light, of the mean of all light; noise: at most what standard errors make \
          of it;\nbias: what noise would add to direct light if the samples that choose the greatest also measured it."
     );
     out

@@ -11,18 +11,19 @@ use std::{
 };
 
 use tyndall::{
-    film::Film,
-    integrator::VolPath,
+    film::{Crop, Film},
+    integrator::Integrator,
     light::Light,
     math::Vec3,
     render::{self, Observer, Settings, render},
     scene::Scene,
 };
 use tyndall_formats::film::{Channel, Image, Metadata, exr};
-use tyndall_lab::separate::{Outcome, Parts, Pattern, Place, Projection, Stage, truth};
+use tyndall_lab::separate::{MARGIN, Outcome, Parts, Pattern, Place, Projection, Stage, truth};
 
 use crate::{
-    args::SamplerName,
+    args::{IntegratorName, SamplerName, word},
+    integrators::integrator,
     interrupt,
     load::{Loaded, load},
     outputs::{Outputs, command_line, is_png, stem_of_scene, write_text},
@@ -39,15 +40,15 @@ const SWEEP: [u32; 7] = [64, 32, 16, 8, 4, 2, 1];
 pub(crate) fn run(options: &SeparateOptions) -> anyhow::Result<ExitCode> {
     interrupt::listen()?;
     let outputs = outputs(options)?;
-    let projections = projections(options)?;
     let pool = pool(options.threads)?;
     let loaded = pool.install(|| load(&options.input, options.resolution, None, None))?;
     loaded.warn();
     let metadata = metadata(options, &loaded);
     let place = place(options, &loaded.scene);
+    let projections = projections(options, place, loaded.scene.camera.width)?;
+    let bench = Bench::new(options, &loaded, &projections);
     let mut stage = Stage::new(loaded.scene, place)?;
     stage.clear();
-    let bench = Bench::new(options, stage.scene(), &projections);
     let Some(clear) = pool.install(|| bench.picture(stage.scene())).and_then(whole) else {
         bench.progress.finish();
         eprintln!("stopped before the first picture was done: nothing was saved");
@@ -93,14 +94,26 @@ fn outputs(options: &SeparateOptions) -> anyhow::Result<Outputs> {
     Ok(outputs)
 }
 
-/// What is thrown, one after the other.
-fn projections(options: &SeparateOptions) -> anyhow::Result<Vec<Projection>> {
+/// What is thrown, one after the other, for an image of so many columns.
+fn projections(options: &SeparateOptions, place: Place, columns: u32) -> anyhow::Result<Vec<Projection>> {
     let patterns = match options.pattern {
         _ if options.sweep => SWEEP.map(Pattern::checkerboard).to_vec(),
         PatternName::Checkerboard => vec![checkerboard(options)],
         PatternName::Waves => vec![Pattern::Waves { period: options.period, phases: options.phases }],
     };
-    let projection = |pattern| Projection::new(pattern, options.pixels, options.dark);
+    // A projector at the camera throws so much wider than that sees.
+    let seen = f64::from(MARGIN) * f64::from(columns);
+    let widest = if options.sweep { Pattern::PAPER } else { patterns[0] }.widest_pixel();
+    let told_apart = (seen * widest).clamp(16.0, 1024.0) as u32;
+    let pixels = options.pixels.unwrap_or([told_apart, told_apart * 3 / 4]);
+    let covered = f64::from(pixels[0]) / seen;
+    if !options.sweep && place != Place::Scene && covered > widest + 0.01 {
+        eprintln!(
+            "warning: a pixel of the image covers {covered:.1} pixels of the projector, and this pattern allows {widest:.1}: direct \
+             light comes out too dark; take fewer --pixels, or a coarser pattern"
+        );
+    }
+    let projection = |pattern| Projection::new(pattern, pixels, options.dark);
     Ok(patterns.into_iter().map(projection).collect::<Result<_, _>>()?)
 }
 
@@ -112,7 +125,7 @@ fn checkerboard(options: &SeparateOptions) -> Pattern {
             step: options.step.unwrap_or(step),
             shifts: options.shifts.unwrap_or(shifts),
         },
-        waves => waves,
+        waves @ Pattern::Waves { .. } => waves,
     }
 }
 
@@ -131,7 +144,7 @@ fn metadata(options: &SeparateOptions, loaded: &Loaded) -> Metadata {
         scene: options.input.scene.display().to_string(),
         scene_hash: loaded.hash.clone(),
         integrator: "volpath".into(),
-        sampler: crate::args::word(&SamplerName::Sobol),
+        sampler: word(&SamplerName::Sobol),
         spp: options.spp,
         samples_per_pixel: f64::from(options.spp),
         seed: options.seed,
@@ -142,6 +155,7 @@ fn metadata(options: &SeparateOptions, loaded: &Loaded) -> Metadata {
 
 /// Takes pictures, all with the same random numbers.
 struct Bench {
+    integrator: Box<dyn Integrator>,
     settings: Settings,
     progress: Progress,
     /// Samples of all pictures, and of those that are done.
@@ -150,11 +164,14 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(options: &SeparateOptions, scene: &Scene, projections: &[Projection]) -> Self {
+    fn new(options: &SeparateOptions, loaded: &Loaded, projections: &[Projection]) -> Self {
+        let (said, camera) = (&loaded.desc.integrator, &loaded.scene.camera);
+        let crop = loaded.crop.unwrap_or(Crop::full(camera.width, camera.height));
         let pictures = 1 + projections.iter().map(|p| u64::from(p.pattern.count())).sum::<u64>();
-        let pixels = u64::from(scene.camera.width) * u64::from(scene.camera.height);
+        let pixels = u64::from(crop.width()) * u64::from(crop.height());
         Self {
-            settings: Settings { spp: options.spp, seed: options.seed, ..Settings::default() },
+            integrator: integrator(IntegratorName::Volpath, said.max_depth.map(|depth| depth.value), said.counted),
+            settings: Settings { spp: options.spp, seed: options.seed, crop: Some(crop), ..Settings::default() },
             progress: Progress::new(pixels, None, true, options.quiet),
             total: pixels * u64::from(options.spp) * pictures,
             done: AtomicU64::new(0),
@@ -170,7 +187,7 @@ impl Bench {
 
     fn half(&self, scene: &Scene, first_sample: u32, spp: u32) -> Option<Film> {
         let settings = Settings { first_sample, spp, ..self.settings };
-        let rendering = render(scene, &VolPath::default(), &settings, self);
+        let rendering = render(scene, self.integrator.as_ref(), &settings, self);
         self.done.fetch_add(rendering.film.pixels.len() as u64 * u64::from(spp), Relaxed);
         (!rendering.stopped).then_some(rendering.film)
     }

@@ -20,8 +20,9 @@ Examples:
   tyndall separate scene.pbrt --sweep                        how the method converges as squares get finer
 
 All lights but the projector go out. The PNG shows what the patterns tell beside the truth, and their difference; the EXR
-holds both as layers (direct, global, separated_direct, separated_global, error_direct) with standard errors. The book has
-more: docs/src/separate.md. Ctrl-C ends the experiment with the patterns that were seen.")]
+holds both as layers (direct, global, separated_direct, separated_global, error_direct) with standard errors. The camera's
+filter becomes a box. Ctrl-C ends the experiment: the truth is saved, and what patterns told that were all seen. The book has
+more: docs/src/separate.md.")]
 pub(crate) struct SeparateOptions {
     #[command(flatten)]
     pub(crate) input: SceneOptions,
@@ -45,10 +46,9 @@ pub(crate) struct SeparateOptions {
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, default_value = "0,0,0", allow_hyphen_values = true)]
     #[arg(help_heading = "The projector")]
     pub(crate) offset: [f32; 3],
-    /// Its pixels
-    #[arg(long, value_name = "WxH", value_parser = values::resolution, default_value = "1024x768")]
-    #[arg(help_heading = "The projector")]
-    pub(crate) pixels: [u32; 2],
+    /// Its pixels [default: 1024x768, or as many as the pixels of a smaller image can tell apart]
+    #[arg(long, value_name = "WxH", value_parser = values::resolution, help_heading = "The projector")]
+    pub(crate) pixels: Option<[u32; 2]>,
     /// What it throws
     #[arg(long, value_name = "NAME", default_value = "checkerboard", help_heading = "The projector")]
     pub(crate) pattern: PatternName,

@@ -77,6 +77,7 @@ Examples:
   tyndall lab gonio --phase 0.8                                              Henyey and Greenstein's phase function
   tyndall lab gonio --layer 'albedo=0.9 tau=2 g=0.75' --angle 60             plane layers
   tyndall lab gonio --grain 'n=1.5 sigma_a=0.1'                              a grain of glass, beside the exact values
+  tyndall lab gonio --grain 'n=1.5 sigma_a=0.1' --mesh sand.ply              a grain of any shape
 
 Light of power 1 comes in at --angle; what leaves is power per solid angle [1/sr], f·|cos| of a BSDF, over the sphere.
 The map has rows of equal height (cosine 1 on top, −1 below) and columns of equal azimuth (0, where a mirror sends
@@ -107,6 +108,9 @@ pub(crate) struct GonioOptions {
     /// A ball of radius 1 in a beam as wide: n, sigma_a, sigma_s, g
     #[arg(long, value_name = "NAME=VALUE…", value_parser = grain, group = "specimen", help_heading = "Experiment")]
     pub(crate) grain: Option<Substance>,
+    /// Instead of the ball a closed mesh (.ply, .obj, .serialized), lit along its -z; lengths are those of the file
+    #[arg(long, value_name = "FILE", requires = "grain", help_heading = "Experiment")]
+    pub(crate) mesh: Option<PathBuf>,
     /// Angle of incidence on a surface or layers [degrees]
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = values::incidence)]
     #[arg(help_heading = "Experiment")]
