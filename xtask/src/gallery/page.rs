@@ -38,6 +38,12 @@ pub(super) fn page(entries: &[Entry], rows: &BTreeMap<String, Told>, book: &Path
             told.wall_seconds,
             100.0 * told.relative_error,
         );
+        if told.sums.is_empty() {
+            let _ = write!(
+                text,
+                "\nIt was rendered without layers; `cargo xtask gallery --filter {name}` takes it apart.\n"
+            );
+        }
         for (kind, sum) in ["ways", "media", "orders"].iter().zip(&told.sums) {
             if book.join(format!("{name}-{kind}.png")).exists() {
                 let _ = write!(text, "\n![{title}: {sum}](gallery/{name}-{kind}.png)\n\n{sum}.\n");

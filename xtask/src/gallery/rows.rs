@@ -89,7 +89,7 @@ pub(super) const ENTRIES: [Entry; 9] = [
         spp: 96,
         options: &[],
         title: "Cornell box, milky",
-        caption: "Thin milk: the blocks are gone, and what is left of the walls is a tint.",
+        caption: "Thin milk: the near block is a shade, the far one is gone, and of the walls a tint is left.",
     },
     Entry {
         name: "hair",
