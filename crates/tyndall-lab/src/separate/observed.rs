@@ -5,9 +5,9 @@ use tyndall::film::{Average, Film};
 /// Direct and global light of each pixel, row by row, with standard errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parts {
-    /// Direct light [radiance].
+    /// Direct light \[radiance\].
     pub direct: Vec<[f32; 3]>,
-    /// All other [radiance].
+    /// All other \[radiance\].
     pub global: Vec<[f32; 3]>,
     /// Standard error of the direct light. Images under patterns share random numbers: there it is an upper bound.
     pub direct_error: Vec<[f32; 3]>,
@@ -56,7 +56,9 @@ impl Extreme {
 
     fn update(&mut self, seen: Seen, is_beyond: impl Fn(f64, f64) -> bool) {
         for (half, taken) in self.by_halves.iter_mut().enumerate() {
-            if is_beyond(seen.halves[half], taken.halves[half]) {
+            let [new, old] = [seen, *taken].map(|seen| seen.halves[half]);
+            // Where there is no noise halves are alike in several pictures, also where the pattern's edge is in the other half.
+            if is_beyond(new, old) || (new == old && is_beyond(seen.mean(), taken.mean())) {
                 *taken = seen;
             }
         }

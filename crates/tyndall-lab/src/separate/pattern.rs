@@ -91,7 +91,11 @@ impl Pattern {
         }
     }
 
-    fn check(&self) -> Result<(), SetupError> {
+    /// Checks what it says.
+    ///
+    /// # Errors
+    /// Sizes of nothing or beyond reason, shifts that leave some pixels always lit or always dark.
+    pub fn check(&self) -> Result<(), SetupError> {
         let sizes = |what, n: u32| {
             within(what, f64::from(n), "between 1 and 8192 pixels", |n| (1.0..=f64::from(MOST_PIXELS)).contains(&n))
         };

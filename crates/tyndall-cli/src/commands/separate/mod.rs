@@ -101,6 +101,7 @@ fn projections(options: &SeparateOptions, place: Place, columns: u32) -> anyhow:
         PatternName::Checkerboard => vec![checkerboard(options)],
         PatternName::Waves => vec![Pattern::Waves { period: options.period, phases: options.phases }],
     };
+    patterns.iter().try_for_each(Pattern::check)?;
     // A projector at the camera throws so much wider than that sees.
     let seen = f64::from(MARGIN) * f64::from(columns);
     let widest = if options.sweep { Pattern::PAPER } else { patterns[0] }.widest_pixel();
