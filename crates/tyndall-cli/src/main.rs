@@ -1,5 +1,5 @@
 //! The tyndall command line: see `tyndall --help`.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "talking to a person is what this program is for")]
+#![allow(clippy::print_stderr, reason = "talking to a person is what this program is for")]
 
 mod args;
 mod canvas;

@@ -65,6 +65,11 @@ impl From<ToneOptions> for Tone {
     }
 }
 
+/// Writes a line to standard output; a reader that has gone away is no fault.
+pub(crate) fn say(line: &str) -> anyhow::Result<()> {
+    write_text("-".as_ref(), line)
+}
+
 /// Writes text to a file, or to standard output if its name is `-`.
 pub(crate) fn write_text(to: &Path, text: &str) -> anyhow::Result<()> {
     if to == Path::new("-") {

@@ -404,3 +404,26 @@ fn what_lies_beside_a_converted_scene_replaces_no_file_of_others() {
     let again = desk.tyndall("convert ball.pbrt there.xml");
     assert!(again.status.success(), "{}", err(&again));
 }
+
+/// `tyndall materials | head`: who has read enough goes away, and that is no fault of the program.
+#[test]
+fn a_reader_that_goes_away_is_no_fault() {
+    let desk = Desk::new("pipe");
+    fs::write(desk.0.join("scene.pbrt"), SCENE).unwrap();
+    for arguments in [
+        &["layers"][..],
+        &["layers", "--explain", "orders:2"],
+        &["materials"],
+        &["mix", "milk", "--fat", "3.5"],
+        &["mix", "milk", "--fat", "3.5", "--json", "-"],
+        &["pack", "sphere:8", "--radius", "1", "--count", "5"],
+        &["info", "scene.pbrt"],
+        &["convert", "scene.pbrt", "scene.xml"],
+        &["render", "scene.pbrt", "--spp", "1", "--json", "-"],
+    ] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = desk.program().args(arguments).stdout(writer).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {output:?}");
+    }
+}

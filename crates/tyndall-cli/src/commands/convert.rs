@@ -11,7 +11,7 @@ use tyndall_formats::{
     write::write,
 };
 
-use crate::args::ConvertOptions;
+use crate::{args::ConvertOptions, outputs::say};
 
 /// Reads a scene and writes it in the language of the other file's ending.
 pub(crate) fn run(options: &ConvertOptions) -> anyhow::Result<ExitCode> {
@@ -50,7 +50,7 @@ pub(crate) fn run(options: &ConvertOptions) -> anyhow::Result<ExitCode> {
             1 => ", and a file beside it".into(),
             n => format!(", and {n} files beside it"),
         };
-        println!("{}{beside}", options.output.display());
+        say(&format!("{}{beside}", options.output.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

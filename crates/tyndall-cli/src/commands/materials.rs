@@ -23,7 +23,7 @@ use tyndall_optics::{
     spectra,
 };
 
-use crate::args::MaterialsOptions;
+use crate::{args::MaterialsOptions, outputs::say};
 
 /// A material with its colour, linear sRGB.
 struct Material {
@@ -68,9 +68,9 @@ pub(crate) fn run(options: &MaterialsOptions) -> anyhow::Result<ExitCode> {
             fs::create_dir_all(directory).with_context(|| directory.display().to_string())?;
             let path = directory.join("index.html");
             save::replace(&path, page(&groups).as_bytes())?;
-            println!("{}", Path::display(&path));
+            say(&format!("{}", Path::display(&path)))?;
         }
-        None => print!("{}", list(&groups, stdout().is_terminal())),
+        None => say(list(&groups, stdout().is_terminal()).trim_end_matches('\n'))?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -16,7 +16,7 @@ use tyndall_grains::{
 };
 
 use self::material::Material;
-use crate::interrupt;
+use crate::{interrupt, outputs::say};
 
 /// Lines that measure the mean free path: a standard error below a percent.
 const LINES: u32 = 100_000;
@@ -75,22 +75,27 @@ pub(crate) fn run(options: &PackOptions) -> anyhow::Result<ExitCode> {
     interrupt::listen()?;
     let start = Instant::now();
     let (pack, rest) = packed(&recipe, options)?;
-    println!("grains             {} of {} in {:.2} s", pack.grains.len(), options.count, start.elapsed().as_secs_f64());
+    say(&format!(
+        "grains             {} of {} in {:.2} s",
+        pack.grains.len(),
+        options.count,
+        start.elapsed().as_secs_f64()
+    ))?;
     if let Some(rest) = rest {
-        println!("{rest}");
+        say(&rest)?;
     }
-    println!("packing fraction   {:.5}", pack.fraction());
-    println!("mean free path     {:.5} mm by formula", pack.free_path_by_formula());
+    say(&format!("packing fraction   {:.5}", pack.fraction()))?;
+    say(&format!("mean free path     {:.5} mm by formula", pack.free_path_by_formula()))?;
     if let Some(rays) = pack.free_path_by_rays(LINES, options.seed) {
-        println!("                   {:.5} ± {:.5} mm by {LINES} rays", rays.mean, rays.error);
+        say(&format!("                   {:.5} ± {:.5} mm by {LINES} rays", rays.mean, rays.error))?;
     }
     if let Some(bulk) = pack.bulk(options.seed) {
-        println!("in the bulk        {:.5} ± {:.5} is grain", bulk.fraction, bulk.error);
-        println!("                   {:.5} mm mean free path", bulk.free_path);
+        say(&format!("in the bulk        {:.5} ± {:.5} is grain", bulk.fraction, bulk.error))?;
+        say(&format!("                   {:.5} mm mean free path", bulk.free_path))?;
     }
     if let Some(path) = &options.out {
         save::replace(path, scene::text(&pack, options.material).as_bytes())?;
-        println!("scene              {}", path.display());
+        say(&format!("scene              {}", path.display()))?;
     }
     Ok(if interrupt::requested() { ExitCode::from(interrupt::EXIT) } else { ExitCode::SUCCESS })
 }

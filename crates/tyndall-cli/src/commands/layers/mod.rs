@@ -10,7 +10,7 @@ use anyhow::{anyhow, ensure};
 use tyndall::lpe::{PathLayer, explain::explain, named, parse};
 use tyndall_formats::film::{exr, save};
 
-use crate::args::LayersOptions;
+use crate::{args::LayersOptions, outputs::say};
 use groups::{Group, groups};
 
 /// What there is to say of an image, of an expression or of a list; without any of them, the names.
@@ -21,12 +21,12 @@ pub(crate) fn run(options: &LayersOptions) -> anyhow::Result<ExitCode> {
     match &options.explain {
         Some(text) => {
             for layer in asked(text)? {
-                println!("{}", about(&layer));
+                say(&about(&layer))?;
             }
         }
         None => {
             for (name, expression, meaning) in named::table() {
-                println!("{name:<14} {expression:<30} {meaning}");
+                say(&format!("{name:<14} {expression:<30} {meaning}"))?;
             }
         }
     }
@@ -43,12 +43,12 @@ fn of_image(path: &Path, options: &LayersOptions) -> anyhow::Result<ExitCode> {
         path.display()
     );
     for group in &groups {
-        println!("{}", sum(group));
+        say(&sum(group))?;
     }
     if let Some(to) = &options.page {
         let page = page::page(&image, &groups, options.exposure)?;
         save::replace(to, page.as_bytes())?;
-        println!("{} ({:.1} MB)", to.display(), page.len() as f64 / 1e6);
+        say(&format!("{} ({:.1} MB)", to.display(), page.len() as f64 / 1e6))?;
     }
     if let Some(stem) = &options.strips {
         for (i, group) in groups.iter().enumerate() {
@@ -57,7 +57,7 @@ fn of_image(path: &Path, options: &LayersOptions) -> anyhow::Result<ExitCode> {
             let mut to = OsString::from(stem);
             to.push(format!("-{}{number}.png", group.kind.word()));
             strips::write(to.as_ref(), &image, group, options.exposure)?;
-            println!("{}", Path::new(&to).display());
+            say(&format!("{}", Path::new(&to).display()))?;
         }
     }
     let exact = groups.iter().all(|group| group.apart.is_some_and(|apart| apart <= 1));

@@ -9,13 +9,13 @@ use std::{fmt::Write, process::ExitCode};
 use anyhow::anyhow;
 use serde::Serialize;
 use tyndall::spectrum::{Role, Sampled};
-use tyndall_formats::film::save;
 use tyndall_optics::{
     medium::wavelengths,
     mixture::{Bulk, Mixture},
 };
 
 use super::lab::report::check_plot;
+use crate::outputs::{say, write_text};
 use options::MixOptions;
 
 /// What is told of a mixture.
@@ -67,14 +67,12 @@ pub(crate) fn run(options: &MixOptions) -> anyhow::Result<ExitCode> {
     }
     if let Some(path) = &output.json {
         add_phase(&mut told, &mixture);
-        let json = serde_json::to_string_pretty(&told)? + "\n";
+        write_text(path, &serde_json::to_string_pretty(&told)?)?;
         if path.as_os_str() == "-" {
-            print!("{json}");
             return Ok(ExitCode::SUCCESS);
         }
-        save::replace(path, json.as_bytes())?;
     }
-    print!("{}", told.table(options.recipe.about));
+    say(told.table(options.recipe.about).trim_end_matches('\n'))?;
     Ok(ExitCode::SUCCESS)
 }
 
