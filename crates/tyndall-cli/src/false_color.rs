@@ -1,5 +1,6 @@
 //! A signed difference as colour: blue below zero, white at zero, red above.
 
+use tyndall::spectrum::srgb::luminance;
 use tyndall_formats::film::Image;
 
 /// sRGB bytes, three a pixel, of the difference of luminance `a − b`, and the difference that is shown in full colour:
@@ -11,11 +12,6 @@ pub(crate) fn difference(a: &Image, b: &Image) -> (Vec<u8>, f32) {
     let scale = sizes.get(sizes.len().saturating_sub(1 + sizes.len() / 1000)).copied().unwrap_or(0.0);
     let pixels = differences.iter().flat_map(|d| color(if scale > 0.0 { d / scale } else { *d })).collect();
     (pixels, scale)
-}
-
-/// Rec. 709 luminance.
-fn luminance(rgb: [f32; 3]) -> f32 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
 
 /// Interpolates in sRGB between a blue and a red of equal lightness (ColorBrewer RdBu ends) through white; black is what

@@ -49,6 +49,11 @@ impl Outputs {
         Ok(())
     }
 
+    /// `a.exr and a.png hold`.
+    pub(crate) fn hold(&self) -> String {
+        format!("{} hold{}", self.names(), if self.files.len() == 1 { "s" } else { "" })
+    }
+
     /// `a.exr and a.png`.
     pub(crate) fn names(&self) -> String {
         self.files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>().join(" and ")

@@ -102,6 +102,8 @@ fn what_cannot_be_projected_ends_with_status_2() {
         ["--pixels", "9999x9999"],
         ["--offset", "1,2"],
         ["--shifts", "2"],
+        ["--square", "4294967295"],
+        ["--resolution", "65536x65536"],
         ["-o", "nowhere/out"],
     ] {
         let output = desk.program().args(["separate", "scene.pbrt", "--spp", "4"]).args(arguments).output().unwrap();

@@ -224,6 +224,7 @@ fn ellipsoid_surface(axes: DVec3) -> f64 {
     2.0 * TAU * axes.element_product() * (0..STEPS).map(row).sum::<f64>() / f64::from(STEPS * STEPS)
 }
 
+/// In the single precision of the geometry library.
 pub(crate) fn single(v: DVec3) -> Vector {
     Vector::from_array(v.as_vec3().to_array())
 }

@@ -82,6 +82,23 @@ pub struct Settled {
 /// As [`Pack::fill`]; more than [`MOST`], sizes that differ too much, friction that cannot be.
 pub fn settle(recipe: &Recipe, friction: f64, mut go_on: impl FnMut(Progress) -> bool) -> Result<Settled, GrainError> {
     let mut pack = Pack::empty(recipe)?;
+    let unit = unit(recipe, friction)?;
+    let mut bodies = Bodies::new(&pack, unit, friction);
+    let interrupted = bodies.fall(&mut pack, recipe, &mut go_on);
+    if pack.grains.is_empty() {
+        return Err(GrainError::NoRoom);
+    }
+    let unrest = bodies.unrest() / (2.0 * GRAVITY).sqrt();
+    let all = pack.grains.len();
+    if interrupted {
+        bodies.remove_fast();
+    }
+    bodies.float_apart(&mut pack);
+    Ok(Settled { removed: all - pack.grains.len(), pack, unrest })
+}
+
+/// The middle of the radii \[length\], of a recipe that rigid bodies can follow.
+fn unit(recipe: &Recipe, friction: f64) -> Result<f64, GrainError> {
     let (smallest, largest) = (recipe.radii.smallest(), recipe.radii.largest());
     if recipe.count > MOST {
         return Err(GrainError::Settling(recipe.count));
@@ -93,63 +110,11 @@ pub fn settle(recipe: &Recipe, friction: f64, mut go_on: impl FnMut(Progress) ->
         return Err(GrainError::Friction(friction));
     }
     let unit = (smallest * largest).sqrt();
-    let half = recipe.container.half();
-    if half.max_element() > WIDEST * unit {
-        return Err(GrainError::TooSmall { radius: unit, least: half.max_element() / WIDEST });
+    let half = recipe.container.half().max_element();
+    if half > WIDEST * unit {
+        return Err(GrainError::TooSmall { radius: unit, least: half / WIDEST });
     }
-    let mut bodies = Bodies::new(&pack, unit, friction);
-    let mut rng = Rng::for_sample((0, 0), 0, recipe.seed);
-    // Time to fall through the container, and to come to rest.
-    let seconds = 2.0 * half.z / unit * DRAG / GRAVITY + 3.0;
-    let expected = (seconds * RATE) as u32;
-    let room = 0.62 * recipe.container.volume() / (4.19 * unit.powi(3));
-    let all = room.min(recipe.count as f64);
-    let (mut interrupted, mut last) = (false, false);
-    while !interrupted && !last {
-        let before = pack.grains.len();
-        pack.add(recipe, &mut rng, PATIENCE, &mut |_| true);
-        let added = pack.grains.len() - before;
-        last = added as f64 <= WORTHWHILE * before as f64;
-        if last {
-            pack.grains.truncate(before);
-        }
-        bodies.insert(&pack, before);
-        // Few of them move in a late round.
-        let enough = if last { REST } else { SLOW * (added as f64 / pack.grains.len() as f64).sqrt() };
-        for step in 1..=4 * expected {
-            bodies.world.step();
-            if step % LOOK == 0 {
-                let passed = f64::from(step.min(expected)) / f64::from(expected);
-                let fallen = (before as f64 + if last { 0.0 } else { passed * added as f64 }) / all;
-                let done = if last { FALLING + (1.0 - FALLING) * passed } else { FALLING * fallen.min(1.0) };
-                interrupted = !go_on(Progress { grains: pack.grains.len() as u64, done });
-                if interrupted || bodies.unrest() < enough {
-                    break;
-                }
-            }
-        }
-        bodies.read(&mut pack);
-    }
-    if pack.grains.is_empty() {
-        return Err(GrainError::NoRoom);
-    }
-    let unrest = bodies.unrest() / (2.0 * GRAVITY).sqrt();
-    let all = pack.grains.len();
-    if interrupted {
-        bodies.remove_fast();
-    }
-    bodies.float();
-    for _ in 0..FLOATING {
-        // What hardly moves falls asleep, overlapping or not.
-        bodies.world.wake_up_all(true);
-        (0..LOOK).for_each(|_| bodies.world.step());
-        bodies.read(&mut pack);
-        pack.sift();
-        if pack.grains.len() == bodies.handles.len() {
-            break;
-        }
-    }
-    Ok(Settled { removed: all - pack.grains.len(), pack, unrest })
+    Ok(unit)
 }
 
 /// Grains as rigid bodies; lengths in a unit of their size.
@@ -194,6 +159,44 @@ impl Bodies {
         }
     }
 
+    /// Adds grains in rounds and lets them fall, until no more find a place; whether somebody has interrupted that.
+    fn fall(&mut self, pack: &mut Pack, recipe: &Recipe, go_on: &mut impl FnMut(Progress) -> bool) -> bool {
+        let unit = self.unit;
+        let mut rng = Rng::for_sample((0, 0), 0, recipe.seed);
+        // Time to fall through the container, and to come to rest.
+        let seconds = 2.0 * recipe.container.half().z / unit * DRAG / GRAVITY + 3.0;
+        let expected = (seconds * RATE) as u32;
+        let room = 0.62 * recipe.container.volume() / (4.19 * unit.powi(3));
+        let all = room.min(recipe.count as f64);
+        let (mut interrupted, mut last) = (false, false);
+        while !interrupted && !last {
+            let before = pack.grains.len();
+            pack.add(recipe, &mut rng, PATIENCE, &mut |_| true);
+            let added = pack.grains.len() - before;
+            last = added as f64 <= WORTHWHILE * before as f64;
+            if last {
+                pack.grains.truncate(before);
+            }
+            self.insert(pack, before);
+            // Few of them move in a late round.
+            let enough = if last { REST } else { SLOW * (added as f64 / pack.grains.len() as f64).sqrt() };
+            for step in 1..=4 * expected {
+                self.world.step();
+                if step % LOOK == 0 {
+                    let passed = f64::from(step.min(expected)) / f64::from(expected);
+                    let fallen = (before as f64 + if last { 0.0 } else { passed * added as f64 }) / all;
+                    let done = if last { FALLING + (1.0 - FALLING) * passed } else { FALLING * fallen.min(1.0) };
+                    interrupted = !go_on(Progress { grains: pack.grains.len() as u64, done });
+                    if interrupted || self.unrest() < enough {
+                        break;
+                    }
+                }
+            }
+            self.read(pack);
+        }
+        interrupted
+    }
+
     /// Root mean square speed [radii/s].
     fn unrest(&self) -> f64 {
         let squares: f64 = self.world.bodies.iter().map(|(_, body)| f64::from(body.linvel().length_squared())).sum();
@@ -226,6 +229,21 @@ impl Bodies {
         let parameters = &mut self.world.integration_parameters;
         parameters.contact_softness = SpringCoefficients::new(60.0, 2.0);
         parameters.static_contact_softness = parameters.contact_softness;
+    }
+
+    /// Lets them float until contacts have pushed them apart, and takes out what overlaps then nevertheless.
+    fn float_apart(&mut self, pack: &mut Pack) {
+        self.float();
+        for _ in 0..FLOATING {
+            // What hardly moves falls asleep, overlapping or not.
+            self.world.wake_up_all(true);
+            (0..LOOK).for_each(|_| self.world.step());
+            self.read(pack);
+            pack.sift();
+            if pack.grains.len() == self.handles.len() {
+                break;
+            }
+        }
     }
 
     /// Where the grains are now.

@@ -15,7 +15,7 @@ use rapier3d::parry::{
     shape::{TriMesh, TriMeshFlags},
 };
 
-use crate::GrainError;
+use crate::{GrainError, form::single};
 
 /// A closed mesh.
 #[derive(Debug, Clone)]
@@ -63,11 +63,11 @@ impl Solid {
         if volume(&points, &triangles) <= 1e-6 {
             return wrong("has no volume, or its normals point inwards");
         }
-        let single: Vec<Vector> = points.iter().map(|p| Vector::from_array(p.as_vec3().to_array())).collect();
-        let boxes = triangles.iter().map(|t| Aabb::from_points(t.map(|i| single[i as usize])));
+        let rounded: Vec<Vector> = points.iter().copied().map(single).collect();
+        let boxes = triangles.iter().map(|t| Aabb::from_points(t.map(|i| rounded[i as usize])));
         let boxes = boxes.map(|b| Aabb::new(b.mins - Vector::splat(1e-5), b.maxs + Vector::splat(1e-5)));
         let tree = Bvh::from_iter(BvhBuildStrategy::Binned, boxes.enumerate());
-        let mesh = TriMesh::with_flags(single, triangles.clone(), TriMeshFlags::ORIENTED)
+        let mesh = TriMesh::with_flags(rounded, triangles.clone(), TriMeshFlags::ORIENTED)
             .map_err(|error| GrainError::Mesh(format!("bounds no body: {error}")))?;
         Ok(Self { centre, half, unit, points, triangles, tree, mesh })
     }
@@ -88,7 +88,7 @@ impl Solid {
 
     /// Whether a ball lies wholly inside; lengths from the centre.
     pub(crate) fn holds(&self, centre: DVec3, ball: f64) -> bool {
-        let place = Vector::from_array((centre / self.unit).as_vec3().to_array());
+        let place = single(centre / self.unit);
         let (nearest, _) = self.mesh.project_local_point_and_get_feature(place);
         nearest.is_inside && f64::from(nearest.point.distance(place)) * self.unit >= ball
     }
@@ -99,7 +99,6 @@ impl Solid {
         let o = origin / self.unit;
         // From the point nearest to the centre, where single precision is best.
         let near = o - o.dot(direction) * direction;
-        let single = |v: DVec3| Vector::from_array(v.as_vec3().to_array());
         let ray = Ray::new(single(near - 4.0 * direction), single(direction));
         let met = self.tree.leaves(|node| node.cast_ray(&ray, f32::MAX) < f32::MAX);
         let mut passages: Vec<f64> = met

@@ -8,7 +8,6 @@ use std::{
     fmt::Write,
     fs,
     io::{IsTerminal, stdout},
-    path::Path,
     process::ExitCode,
 };
 
@@ -68,7 +67,7 @@ pub(crate) fn run(options: &MaterialsOptions) -> anyhow::Result<ExitCode> {
             fs::create_dir_all(directory).with_context(|| directory.display().to_string())?;
             let path = directory.join("index.html");
             save::replace(&path, page(&groups).as_bytes())?;
-            say(&format!("{}", Path::display(&path)))?;
+            say(&path.display().to_string())?;
         }
         None => say(list(&groups, stdout().is_terminal()).trim_end_matches('\n'))?,
     }

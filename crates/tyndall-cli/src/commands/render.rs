@@ -61,7 +61,7 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
     }
     Ok(match statistics.ended {
         End::Interrupted => {
-            eprintln!("stopped by Ctrl-C: {} hold{} what is done", outputs.names(), plural(outputs.files.len()));
+            eprintln!("stopped by Ctrl-C: {} what is done", outputs.hold());
             ExitCode::from(interrupt::EXIT)
         }
         End::Complete | End::Time => ExitCode::SUCCESS,
@@ -163,10 +163,7 @@ fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings
     let crop = options.crop.or(loaded.crop);
     let (width, height) = (loaded.scene.camera.width, loaded.scene.camera.height);
     let pixels = crop.map_or(u64::from(width) * u64::from(height), |c| u64::from(c.width()) * u64::from(c.height()));
-    ensure!(
-        pixels.saturating_mul(1 + loaded.scene.camera.layers.len() as u64) <= MOST_PIXELS,
-        "{pixels} pixels are more than fit into memory: render the image in parts, by --crop"
-    );
+    fit_into_memory(pixels, 1 + loaded.scene.camera.layers.len() as u64)?;
     if let Some(crop) = crop {
         ensure!(
             crop.max.0 <= width && crop.max.1 <= height,
@@ -184,6 +181,15 @@ fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings
     Ok(Settings { spp, first_sample: 0, seed: options.seed.or(seed).unwrap_or(0), sampler, crop })
 }
 
+/// Whether so many pixels, each with so many values and their sums, can be held.
+pub(crate) fn fit_into_memory(pixels: u64, values: u64) -> anyhow::Result<()> {
+    ensure!(
+        pixels.saturating_mul(values) <= MOST_PIXELS,
+        "{pixels} pixels are more than fit into memory: render the image in parts, by --crop"
+    );
+    Ok(())
+}
+
 pub(crate) fn color_mode(name: ColorName) -> ColorMode {
     match name {
         ColorName::Rgb => ColorMode::Rgb,
@@ -198,8 +204,4 @@ fn color_name(mode: ColorMode) -> ColorName {
         ColorMode::Mono => ColorName::Mono,
         ColorMode::Spectral => ColorName::Spectral,
     }
-}
-
-fn plural(n: usize) -> &'static str {
-    if n == 1 { "s" } else { "" }
 }

@@ -1,6 +1,9 @@
 //! What is kept of the images, and what follows from it.
 
-use tyndall::film::{Average, Film};
+use tyndall::{
+    film::{Average, Film},
+    spectrum::srgb::luminance,
+};
 
 /// Direct and global light of each pixel, row by row, with standard errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -197,16 +200,11 @@ impl Observed {
     pub(super) fn bias(&self) -> Option<f64> {
         let pixel = |records: &[Record; 3]| {
             let [r, g, b] = records.map(|record| record.bias(self.dark));
-            Some(luminance([r?, g?, b?]))
+            Some(f64::from(luminance([r?, g?, b?].map(|x| x as f32))))
         };
         let all: Vec<f64> = self.records.iter().filter_map(pixel).collect();
         (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
     }
-}
-
-/// Rec. 709 luminance.
-fn luminance([r, g, b]: [f64; 3]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// The direct light of a film's first layer, with its standard error.

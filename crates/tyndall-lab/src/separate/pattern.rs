@@ -40,7 +40,7 @@ impl Pattern {
     pub fn checkerboard(square: u32) -> Self {
         let step = square.saturating_mul(3).div_ceil(8).max(1);
         // As many as come round, but no more than the paper has.
-        Self::Checkerboard { square, step, shifts: (2 * square.max(1)).div_ceil(step).min(5) }
+        Self::Checkerboard { square, step, shifts: square.max(1).saturating_mul(2).div_ceil(step).min(5) }
     }
 
     /// How much of the projector a pixel may cover, so that it is wholly lit in some image and wholly dark in another

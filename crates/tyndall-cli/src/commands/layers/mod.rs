@@ -1,6 +1,7 @@
 //! `tyndall layers`: the layers of light that have names, what expressions select, and what the layers of an image are.
 
 mod groups;
+pub(crate) mod options;
 mod page;
 mod strips;
 
@@ -10,8 +11,9 @@ use anyhow::{anyhow, ensure};
 use tyndall::lpe::{PathLayer, explain::explain, named, parse};
 use tyndall_formats::film::{exr, save};
 
-use crate::{args::LayersOptions, outputs::say};
+use crate::outputs::say;
 use groups::{Group, groups};
+use options::LayersOptions;
 
 /// What there is to say of an image, of an expression or of a list; without any of them, the names.
 pub(crate) fn run(options: &LayersOptions) -> anyhow::Result<ExitCode> {
@@ -57,7 +59,7 @@ fn of_image(path: &Path, options: &LayersOptions) -> anyhow::Result<ExitCode> {
             let mut to = OsString::from(stem);
             to.push(format!("-{}{number}.png", group.kind.word()));
             strips::write(to.as_ref(), &image, group, options.exposure)?;
-            say(&format!("{}", Path::new(&to).display()))?;
+            say(&Path::new(&to).display().to_string())?;
         }
     }
     let exact = groups.iter().all(|group| group.apart.is_some_and(|apart| apart <= 1));

@@ -3,7 +3,10 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use tyndall::film::{Film, Pixel};
+use tyndall::{
+    film::{Film, Pixel},
+    spectrum::srgb,
+};
 use tyndall_lab::{
     run::Estimate,
     separate::{Outcome, Parts, Pattern, Projection},
@@ -111,8 +114,6 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / count.max(1) as f64
 }
 
-/// Rec. 709 luminance.
 fn luminance(rgb: [f32; 3]) -> f64 {
-    let [r, g, b] = rgb.map(f64::from);
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    srgb::luminance(rgb).into()
 }

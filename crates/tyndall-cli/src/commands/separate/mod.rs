@@ -21,6 +21,7 @@ use tyndall::{
 use tyndall_formats::film::{Channel, Image, Metadata, exr};
 use tyndall_lab::separate::{MARGIN, Outcome, Parts, Pattern, Place, Projection, Stage, truth};
 
+use super::render::fit_into_memory;
 use crate::{
     args::{IntegratorName, SamplerName, word},
     integrators::integrator,
@@ -46,7 +47,7 @@ pub(crate) fn run(options: &SeparateOptions) -> anyhow::Result<ExitCode> {
     let metadata = metadata(options, &loaded);
     let place = place(options, &loaded.scene);
     let projections = projections(options, place, loaded.scene.camera.width)?;
-    let bench = Bench::new(options, &loaded, &projections);
+    let bench = Bench::new(options, &loaded, &projections)?;
     let mut stage = Stage::new(loaded.scene, place)?;
     stage.clear();
     let Some(clear) = pool.install(|| bench.picture(stage.scene())).and_then(whole) else {
@@ -67,11 +68,7 @@ pub(crate) fn run(options: &SeparateOptions) -> anyhow::Result<ExitCode> {
     let figures: Vec<Figures> = found.into_iter().map(|(figures, _)| figures).collect();
     tell(options, &outputs, &figures)?;
     if interrupt::requested() {
-        eprintln!(
-            "stopped by Ctrl-C: {} hold{} what is done",
-            outputs.names(),
-            if outputs.files.len() == 1 { "s" } else { "" }
-        );
+        eprintln!("stopped by Ctrl-C: {} what is done", outputs.hold());
         return Ok(ExitCode::from(interrupt::EXIT));
     }
     Ok(ExitCode::SUCCESS)
@@ -154,6 +151,9 @@ fn metadata(options: &SeparateOptions, loaded: &Loaded) -> Metadata {
     }
 }
 
+/// What is kept of a pixel, as a film counts it: two halves of a picture, the whole one, and what was greatest and least.
+const VALUES: u64 = 12;
+
 /// Takes pictures, all with the same random numbers.
 struct Bench {
     integrator: Box<dyn Integrator>,
@@ -165,18 +165,19 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(options: &SeparateOptions, loaded: &Loaded, projections: &[Projection]) -> Self {
+    fn new(options: &SeparateOptions, loaded: &Loaded, projections: &[Projection]) -> anyhow::Result<Self> {
         let (said, camera) = (&loaded.desc.integrator, &loaded.scene.camera);
         let crop = loaded.crop.unwrap_or(Crop::full(camera.width, camera.height));
         let pictures = 1 + projections.iter().map(|p| u64::from(p.pattern.count())).sum::<u64>();
         let pixels = u64::from(crop.width()) * u64::from(crop.height());
-        Self {
+        fit_into_memory(pixels, VALUES)?;
+        Ok(Self {
             integrator: integrator(IntegratorName::Volpath, said.max_depth.map(|depth| depth.value), said.counted),
             settings: Settings { spp: options.spp, seed: options.seed, crop: Some(crop), ..Settings::default() },
             progress: Progress::new(pixels, None, true, options.quiet),
             total: pixels * u64::from(options.spp) * pictures,
             done: AtomicU64::new(0),
-        }
+        })
     }
 
     /// A picture by halves of its samples; `None` if somebody pressed Ctrl-C before it was whole.
