@@ -28,7 +28,7 @@ pub(super) fn albedos(family: &'static str, effort: Effort) -> Result<Vec<Experi
         let incidence = if mu0 == "diffuse" { Incidence::Diffuse } else { Incidence::Beam(row.number("mu0")) };
         let mut setup = half_space(albedo, incidence);
         setup.bins.orders = 3;
-        let effort = if albedo > 0.99 { effort.long() } else { effort };
+        let effort = if albedo > 0.99 { effort.long() } else { effort }.finer(2.0);
         effort.experiment(family, number, |share| {
             let check = |column: &str, accuracy, measured| {
                 Check::new(format!("{column}, albedo {albedo}, mu0 {mu0}"), row.number(column), accuracy, measured)
@@ -85,7 +85,7 @@ pub(super) fn h_function(family: &'static str, effort: Effort) -> Result<Vec<Exp
 
 pub(super) fn h_moments(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
     let table = rows(include_str!("../../data/chandrasekhar_H_moments.csv"));
-    let mut experiments = Vec::new();
+    let (effort, mut experiments) = (effort.finer(2.0), Vec::new());
     // At albedo 1 the albedo of the half-space, which is 1, says nothing of H.
     for (i, row) in table.iter().enumerate().filter(|(_, row)| row.number("albedo") < 1.0) {
         let albedo = row.number("albedo");

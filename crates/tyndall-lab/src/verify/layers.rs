@@ -55,7 +55,7 @@ const MCML_TOTALS: &str = include_str!("../../data/mcml_totals_vs_adding.csv");
 pub(super) fn mcml_totals(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
     let table = rows(MCML_TOTALS);
     // Half a percent of a coefficient moves a total by some 10⁻⁴ of what is sent in: more photons than elsewhere.
-    let effort = Effort { error: effort.error / 4.0, ..effort.long().times(4) };
+    let effort = effort.long().times(4).finer(4.0);
     let experiment = |(number, row): (usize, &Row)| {
         let setup = mcml(row);
         let case = row.word("case");
@@ -81,7 +81,7 @@ pub(super) fn by_angle(family: &'static str, effort: Effort) -> Result<Vec<Exper
     let mut setup = mcml(&totals[0]);
     setup.bins.angles = table.len();
     // 60 bins share the photons of one experiment: it gets those of many, whatever the totals say.
-    let effort = Effort { error: 0.0, ..effort.times(20) };
+    let effort = Effort { error: 0.0, ..effort.times(40) };
     let experiment = effort.experiment(family, 0, |share| {
         let m = share.slab(&setup)?;
         let mut checks = Vec::new();

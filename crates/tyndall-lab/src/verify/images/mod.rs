@@ -98,9 +98,12 @@ fn mean(scene: &Scene, with: &Named, share: Share) -> Estimate {
 fn by_each(share: Share, can: Can, scene: Scene, what: &str, expected: [f64; 2]) -> Vec<Check> {
     let scene = share.scene(scene);
     let [expected, uncertainty] = expected;
-    let check =
-        |with: &Named| Check::new(format!("{what}, {}", with.name), expected, uncertainty, mean(&scene, with, share));
-    integrators(can).iter().map(check).collect()
+    // Of each its own random numbers: where they do the same they would else say the same once more.
+    let check = |(number, with): (u32, &Named)| {
+        let measured = mean(&scene, with, share.again(number));
+        Check::new(format!("{what}, {}", with.name), expected, uncertainty, measured)
+    };
+    (0..).zip(&integrators(can)).map(check).collect()
 }
 
 /// Figures of which more scattering makes less.
