@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{DMat4, DVec3};
 use tyndall::{
     light::{EmitterShape, Light},
+    lpe::Names,
     math::{Transform, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
@@ -31,9 +32,9 @@ use crate::{
 pub(super) struct Shapes {
     pub(super) geometry: Geometry,
     pub(super) objects: Vec<Object>,
-    /// What each object is called, and its material.
-    pub(super) names: Vec<Vec<String>>,
     pub(super) lights: Vec<Light>,
+    /// What objects and lights are called.
+    pub(super) names: Names,
     /// The surfaces of shapes that measure, by their index in the description.
     pub(super) meters: HashMap<usize, Vec<EmitterShape>>,
 }
@@ -43,6 +44,7 @@ pub(super) struct Shapes {
 struct Gathered<'a> {
     builder: GeometryBuilder,
     objects: Vec<Object>,
+    /// What each object is called, and its material.
     names: Vec<Vec<String>>,
     emitters: Vec<Shining<'a>>,
     painting: Painting,
@@ -74,16 +76,19 @@ impl<'a> Builder<'a> {
             Err(e) => return self.fail(SceneError::new(e.to_string())),
         };
         self.paint(&geometry, gathered.painting);
-        let mut lights = Vec::new();
+        let (mut lights, mut names_of_lights) = (Vec::new(), Vec::new());
         for shining in &gathered.emitters {
-            let emission = self.emitters(&geometry, shining, &mut lights)?;
-            gathered.objects[shining.object.0 as usize].emission = emission;
+            let object = shining.object.0 as usize;
+            gathered.objects[object].emission = self.emitters(&geometry, shining, &mut lights)?;
+            let names = shining.light.name.iter().chain(&gathered.names[object]).cloned().collect();
+            names_of_lights.resize(lights.len(), names);
         }
+        let names = Names { objects: gathered.names, lights: names_of_lights, media: Vec::new() };
         let mut meters = HashMap::new();
         for (index, objects) in objects {
             meters.insert(index, surfaces(&geometry, objects));
         }
-        Some(Shapes { geometry, objects: gathered.objects, names: gathered.names, lights, meters })
+        Some(Shapes { geometry, objects: gathered.objects, lights, names, meters })
     }
 
     /// The surface of a shape on its own.

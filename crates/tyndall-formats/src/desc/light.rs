@@ -41,6 +41,8 @@ pub struct AreaLightDesc {
     pub two_sided: bool,
     /// Into which directions.
     pub spread: Spread,
+    /// What layers of light call it, beside the name of its shape.
+    pub name: Option<String>,
 }
 
 /// Into which directions a surface emits.
@@ -57,6 +59,8 @@ pub enum Spread {
 pub struct LightDesc {
     /// The words that made it.
     pub span: Span,
+    /// What layers of light call it; several may have one name.
+    pub name: Option<String>,
     /// What kind.
     pub kind: LightKind,
     /// The light's own space to world. A light sits at the origin of its space and shines along +z: the position is the

@@ -47,7 +47,7 @@ impl<'t> Builder<'t> {
     /// A material; `two_sided` where a `twosided` is around it.
     pub(super) fn bsdf(&mut self, element: &'t Element, two_sided: bool) -> Option<MaterialDesc> {
         let plugin = words::plugin(element, &mut self.report)?;
-        let name = element.attribute("id").map(|id| id.value.clone());
+        let name = element.id();
         let desc = |kind| MaterialDesc { span: element.span, name: name.clone(), kind, two_sided };
         if plugin != "twosided" {
             return self.bsdf_kind(plugin, element, two_sided).map(desc);

@@ -6,6 +6,8 @@
 //!
 //! Mitsuba's light that goes straight ahead (`directionalarea`) is found by its particle tracer only; here by all integrators.
 //!
+//! Its `id` is what layers of light call it.
+//!
 //! A texture as light is white light times the texture, as a number is.
 
 use glam::{DMat4, DQuat, DVec3};
@@ -43,7 +45,8 @@ impl<'t> Builder<'t> {
         let (radiance, pattern) = self.textured_light(&mut object, "radiance");
         object.ignore(&["sampling_weight"], CHOSEN, &mut self.report);
         object.finish(&mut self.report);
-        Some(AreaLightDesc { span: element.span, radiance, pattern, power: None, two_sided: false, spread })
+        let (span, name) = (element.span, element.id());
+        Some(AreaLightDesc { span, radiance, pattern, power: None, two_sided: false, spread, name })
     }
 
     /// Light of this name; or white light, and the texture that stands there.
@@ -108,7 +111,7 @@ impl<'t> Builder<'t> {
         };
         object.ignore(&["sampling_weight"], CHOSEN, &mut self.report);
         object.finish(&mut self.report);
-        Some(LightDesc { span: element.span, kind, to_world, medium })
+        Some(LightDesc { span: element.span, name: element.id(), kind, to_world, medium })
     }
 
     /// The texture in front of a spot.

@@ -29,7 +29,7 @@ impl<'t> Builder<'t> {
         object.finish(report);
         Some(MediumDesc {
             span: element.span,
-            name: element.attribute("id").map(|id| id.value.clone()),
+            name: element.id(),
             coefficients,
             scale: scale.unwrap_or(Spanned::new(1.0, element.span)),
             phase,

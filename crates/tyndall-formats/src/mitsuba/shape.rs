@@ -57,10 +57,9 @@ impl<'t> Builder<'t> {
         let priority = priority.map(|p| p.map(|p| i32::try_from(p).unwrap_or(i32::MAX)));
         object.ignore(&["silhouette_sampling_weight"], "silhouettes are not sampled", report);
         object.finish(report);
-        let name = element.attribute("id").map(|id| id.value.clone());
         Some(ShapeDesc {
             span: element.span,
-            name,
+            name: element.id(),
             kind,
             to_world,
             reverse_orientation,

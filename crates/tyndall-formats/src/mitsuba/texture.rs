@@ -119,7 +119,7 @@ impl<'t> Builder<'t> {
         };
         self.texture_depth -= 1;
         let id = kind.map(|kind| {
-            let name = element.attribute("id").map(|id| id.value.clone());
+            let name = element.id();
             self.textures.push(TextureDesc { span: element.span, name, kind });
             TextureId(self.textures.len() as u32 - 1)
         });

@@ -74,6 +74,11 @@ impl Element {
         self.attributes.iter().find(|a| a.name == name)
     }
 
+    /// Its `id`, which is what the scene calls it.
+    pub(super) fn id(&self) -> Option<String> {
+        self.attribute("id").map(|id| id.value.clone())
+    }
+
     /// The value of an attribute, empty if it is not there.
     pub(super) fn text(&self, name: &str) -> &str {
         self.attribute(name).map_or("", |a| &a.value)

@@ -4,6 +4,8 @@
 //! what is left ([`Magnitude::UnitLuminance`]). `power` and `illuminance` are factors on that: what the light gives in all if its
 //! spectrum has luminance 1, over what it would give with a radiance or intensity of 1. One that is not positive counts as
 //! not given. Each face of a mesh is a light of its own, and has all of the `power`.
+//!
+//! tyndall's own `name` is what layers of light call it.
 
 use std::f64::consts::PI;
 use std::rc::Rc;
@@ -40,6 +42,7 @@ impl Reader {
             "projection" => self.projection(&mut p),
             _ => Some((infinite(&mut p), DMat4::IDENTITY)),
         };
+        let name = p.name();
         self.finish_params(p);
         let Some((kind, own)) = made else { return };
         let to_world = self.state.now.ctm * own;
@@ -47,7 +50,7 @@ impl Reader {
             self.errors.push(SceneError::at(s.whole, "the position of this light is too large"));
         }
         let medium = self.state.now.interface.and_then(|i| i.outside.map(|m| Spanned::new(m, i.span)));
-        self.lights.push(LightDesc { span: s.whole, kind, to_world, medium });
+        self.lights.push(LightDesc { span: s.whole, name, kind, to_world, medium });
     }
 
     pub(super) fn area_light(&mut self, mut s: Statement<'_>) {
@@ -65,9 +68,11 @@ impl Reader {
         let picture = p.file_opt("filename");
         let power = p.positive_opt("power");
         let two_sided = p.boolean("twosided", false).value;
+        let name = p.name();
         self.finish_params(p);
         let pattern = picture.map(|path| self.picture(path, true));
-        let light = AreaLightDesc { span: s.whole, radiance, pattern, power, two_sided, spread: Spread::Diffuse };
+        let spread = Spread::Diffuse;
+        let light = AreaLightDesc { span: s.whole, radiance, pattern, power, two_sided, spread, name };
         self.state.now.area_light = Some(Rc::new(light));
     }
 

@@ -244,6 +244,11 @@ impl Params {
         param.values.strings.first().cloned()
     }
 
+    /// What layers of light call a thing: tyndall's own.
+    pub(super) fn name(&mut self) -> Option<String> {
+        self.string_opt("name").map(|name| name.value).filter(|name| !name.is_empty())
+    }
+
     /// So many strings; `None` if there are others or none.
     pub(super) fn strings(&mut self, name: &'static str, count: usize) -> Option<Vec<Spanned<String>>> {
         let param = self.take(name, &[ParamType::String])?;

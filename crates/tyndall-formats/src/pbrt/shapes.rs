@@ -36,10 +36,10 @@ impl Reader {
         };
         let opacity = p.number("alpha", &self.textures, |_| true).filter(|a| a.value.number().is_none_or(|a| a < 1.0));
         // tyndall's own.
-        let priority = p.integer_opt("priority");
+        let (priority, name) = (p.integer_opt("priority"), p.name());
         self.finish_params(p);
         if let Some(kind) = kind {
-            let shape = ShapeDesc { opacity, priority, ..self.bound(&s, kind) };
+            let shape = ShapeDesc { name, opacity, priority, ..self.bound(&s, kind) };
             self.place(shape);
         }
     }

@@ -95,7 +95,7 @@ impl Pen<'_, '_> {
         if let Some(medium) = light.medium {
             element.push(self.medium_ref(medium.value));
         }
-        Some(element)
+        Some(self.called(element, light.name.as_deref(), light.span))
     }
 
     pub(super) fn area_light(&mut self, light: &AreaLightDesc) -> Element {
@@ -111,7 +111,7 @@ impl Pen<'_, '_> {
         };
         let mut element = Element::plugin("emitter", word);
         element.extend(self.patterned("radiance", &light.radiance, light.pattern.as_ref()));
-        element
+        self.called(element, light.name.as_deref(), light.span)
     }
 
     /// Light, or a texture of it: white light times the texture.

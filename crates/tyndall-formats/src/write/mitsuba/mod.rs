@@ -70,6 +70,17 @@ impl Pen<'_, '_> {
         self.draft.lacks(span, what);
     }
 
+    /// The `id` of a shape or a light that has a name. No two things have the same.
+    fn called(&mut self, element: Element, name: Option<&str>, span: Span) -> Element {
+        let Some(name) = name else { return element };
+        let id = self.names.unique(Some(name), "thing");
+        if id != name && !self.draft.desc.film.parts.layers.is_empty() {
+            let message = format!("\"{name}\" is the name of another thing too: this one is called \"{id}\" now");
+            self.draft.differs(span, &message);
+        }
+        element.with("id", &id)
+    }
+
     fn medium_ref(&self, id: MediumId) -> Element {
         Element::new("ref").with("id", self.media.get(id.0 as usize).map_or("", |name| name))
     }

@@ -57,10 +57,7 @@ impl Pen<'_, '_> {
 
     /// With what is bound to a shape.
     fn bound(&mut self, mut element: Element, shape: &ShapeDesc) -> Element {
-        if let Some(name) = &shape.name {
-            let name = self.names.unique(Some(name), "shape");
-            element = element.with("id", &name);
-        }
+        element = self.called(element, shape.name.as_deref(), shape.span);
         if shape.reverse_orientation {
             element.boolean("flip_normals", true);
         }

@@ -21,7 +21,8 @@ impl Pen<'_, '_> {
     }
 
     fn light(&mut self, light: &LightDesc) {
-        let Some((entity, space)) = self.light_kind(light) else { return };
+        let Some((mut entity, space)) = self.light_kind(light) else { return };
+        self.name(&mut entity, light.name.as_deref());
         let space = match space {
             Aim::Space(m) if m != DMat4::IDENTITY => Some(m),
             _ => None,
@@ -165,6 +166,7 @@ impl Pen<'_, '_> {
         if light.two_sided {
             entity.boolean("twosided", true);
         }
+        self.name(&mut entity, light.name.as_deref());
         self.entity(entity);
     }
 }

@@ -17,6 +17,7 @@ use glam::DMat4;
 
 use super::Draft;
 use super::names::Names;
+use super::names::printable;
 use super::number::doubles;
 use super::place::Place;
 use super::sheet::Sheet;
@@ -26,7 +27,7 @@ use texture::Textures;
 
 /// Lines of comment.
 pub(super) fn commented(lines: &[String]) -> String {
-    let lines: Vec<_> = lines.iter().map(|line| format!("# {}", super::names::printable(line))).collect();
+    let lines: Vec<_> = lines.iter().map(|line| format!("# {}", printable(line))).collect();
     lines.join("\n") + "\n\n"
 }
 
@@ -75,6 +76,17 @@ impl Pen<'_, '_> {
 
     fn entity(&mut self, entity: Entity) {
         entity.write(&mut self.sheet);
+    }
+
+    /// What layers of light call a thing, where the film asks for some: pbrt has no such word.
+    fn name(&mut self, entity: &mut Entity, name: Option<&str>) {
+        if let Some(name) = name.filter(|_| self.names_count()) {
+            entity.string("name", &printable(name));
+        }
+    }
+
+    fn names_count(&self) -> bool {
+        !self.draft.desc.film.parts.layers.is_empty()
     }
 
     fn open(&mut self) {

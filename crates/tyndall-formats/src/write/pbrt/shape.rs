@@ -59,8 +59,9 @@ impl Pen<'_, '_> {
         if let Some(priority) = shape.priority {
             entity.integer("priority", priority.value.into());
         }
+        self.name(&mut entity, shape.name.as_deref());
         let name = quoted(self.material_name(material));
-        if let Some(name) = &shape.name {
+        if let Some(name) = shape.name.as_ref().filter(|_| !self.names_count()) {
             self.sheet.line(&format!("# {}", printable(name)));
         }
         self.open();
