@@ -212,6 +212,17 @@ fn layers_of_light_go_from_either_language_to_the_other() {
     let (scene, _) = build(&again, sources, ColorMode::Rgb).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(scene.camera.layers.len(), names.len());
 
+    // Lights of one name are a group in pbrt, and two things in Mitsuba.
+    std::fs::write(
+        &first,
+        text.replace("\"point\" \"string name\" \"key\"", "\"point\" \"string name\" \"lamp\"").replace("L'key'", "L"),
+    )
+    .unwrap();
+    let (desc, sources) = read(&first);
+    let written = write(&desc, &sources, &other, Unsupported::Refuse).unwrap();
+    let told = written.warnings.iter().any(|w| w.message.contains("\"lamp\" is called \"lamp-2\" there"));
+    assert!(told && written.text.contains("id=\"lamp-2\""), "{}", written.text);
+
     for (from, to, message) in
         [("V'milk'", "V'mlik'", "nothing in the scene is called 'mlik'"), ("<RD'", "<RX'", "`X` is not a kind")]
     {

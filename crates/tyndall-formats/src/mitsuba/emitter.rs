@@ -6,7 +6,7 @@
 //!
 //! Mitsuba's light that goes straight ahead (`directionalarea`) is found by its particle tracer only; here by all integrators.
 //!
-//! Its `id` is what layers of light call it.
+//! The `id` of an emitter is what layers of light call it.
 //!
 //! A texture as light is white light times the texture, as a number is.
 

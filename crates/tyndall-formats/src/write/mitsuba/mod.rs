@@ -75,7 +75,7 @@ impl Pen<'_, '_> {
         let Some(name) = name else { return element };
         let id = self.names.unique(Some(name), "thing");
         if id != name && !self.draft.desc.film.parts.layers.is_empty() {
-            let message = format!("\"{name}\" is the name of another thing too: this one is called \"{id}\" now");
+            let message = format!("no two things have one id in Mitsuba: \"{name}\" is called \"{id}\" there");
             self.draft.differs(span, &message);
         }
         element.with("id", &id)

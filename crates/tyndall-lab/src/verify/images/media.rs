@@ -167,7 +167,7 @@ pub(crate) fn radiance(family: &'static str, effort: Effort) -> Made<Vec<Experim
 
 /// The BRDF of the half-space that scatters alike in all directions.
 pub(crate) fn brdf(family: &'static str, effort: Effort) -> Made<Vec<Experiment>> {
-    // The radiance is some tenth of the light that is sent in.
+    // A radiance is a small part of the light that is sent in.
     let effort = effort.finer(4.0);
     let table = rows(BRDF);
     let experiment = |(number, row): (usize, &Row)| {
