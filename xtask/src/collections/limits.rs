@@ -2,6 +2,7 @@
 //!
 //! Linux: `timeout` of coreutils and `prlimit` of util-linux do the work.
 
+use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
@@ -49,8 +50,10 @@ impl Limits {
         Ok(match output.status.code() {
             Some(0) => End::Done(String::from_utf8_lossy(&output.stdout).into_owned()),
             Some(TIMED_OUT) => End::TooLong,
-            Some(PANICKED) | None => End::Broken(stderr),
+            Some(PANICKED) => End::Broken(stderr),
             Some(code) if code > 128 => End::Broken(format!("signal {}\n{stderr}", code - 128)),
+            // `timeout` ends as its program did.
+            None => End::Broken(format!("signal {}\n{stderr}", output.status.signal().unwrap_or_default())),
             Some(_) => End::Failed(stderr),
         })
     }
@@ -74,7 +77,7 @@ mod tests {
         assert!(matches!(shell(60, "echo yes"), End::Done(stdout) if stdout == "yes\n"));
         assert!(matches!(shell(60, "echo no >&2; exit 2"), End::Failed(text) if text == "no\n"));
         assert!(matches!(shell(60, "exit 101"), End::Broken(_)));
-        assert!(matches!(shell(60, "kill -SEGV $$"), End::Broken(_)));
+        assert!(matches!(shell(60, "kill -SEGV $$"), End::Broken(text) if text == "signal 11\n"));
         assert!(matches!(shell(1, "sleep 60"), End::TooLong));
     }
 
