@@ -60,7 +60,7 @@ impl Reader {
         let diagonal = p.positive("diagonal", 35.0).value;
         p.ignore("savefp16", "images are written in single precision");
         p.later_unless("whitebalance", 0.0);
-        p.later("maxcomponentvalue");
+        p.ignore("maxcomponentvalue", "no sample is clamped: clamped, the image is too dark");
         sensor(&mut p);
         let layers = match &*name.value {
             "gbuffer" => gbuffer(&mut p),
