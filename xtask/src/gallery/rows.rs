@@ -62,7 +62,7 @@ pub(super) const ENTRIES: [Entry; 10] = [
         spp: 160,
         options: &[],
         title: "A figure of marble",
-        caption: "A veiled head, 152 mm high. A warm lamp stands behind it, and the veil, four millimetres thick, lets its light \
+        caption: "A veiled head, 153 mm high. A warm lamp stands behind it, and the veil, four millimetres thick, lets its light \
                   through, red more than blue; head and plinth let none. Shadows on the face are soft, for the stone fills them.",
     },
     Entry {

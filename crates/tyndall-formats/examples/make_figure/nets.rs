@@ -93,11 +93,10 @@ fn ends(edge: usize) -> [usize; 2] {
 
 /// Which patch of the surface crosses each edge of a cell, by the number of one of its edges.
 fn patches(inside: [bool; 8]) -> [Option<usize>; 12] {
-    let mut patches = [None; 12];
-    for edge in 0..12 {
+    let mut patches: [Option<usize>; 12] = std::array::from_fn(|edge| {
         let [a, b] = ends(edge);
-        patches[edge] = (inside[a] != inside[b]).then_some(edge);
-    }
+        (inside[a] != inside[b]).then_some(edge)
+    });
     let unite = |patches: &mut [Option<usize>; 12], edges: &[usize]| {
         if let &[p, q] = edges {
             let (old, new) = (patches[p], patches[q]);
