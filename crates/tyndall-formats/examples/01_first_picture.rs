@@ -1,7 +1,7 @@
 //! Example 1: from a scene file to a picture, in the three steps that `tyndall render` takes too.
 //!
 //! ```text
-//! cargo run --release --example 01_first_picture -- scenes/lecture/surface.pbrt picture.png
+//! cargo run --release -p tyndall-formats --example 01_first_picture -- scenes/lecture/surface.pbrt picture.png
 //! ```
 //!
 //! 1. [`load`] reads what the user wrote, in pbrt's or Mitsuba's language.

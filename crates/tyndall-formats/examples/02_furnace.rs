@@ -1,7 +1,7 @@
 //! Example 2: a scene in code, and a number with its error.
 //!
 //! ```text
-//! cargo run --release --example 02_furnace
+//! cargo run --release -p tyndall-formats --example 02_furnace
 //! ```
 //!
 //! The furnace test: a ball that scatters and absorbs nothing, under a sky of the same radiance from everywhere, cannot

@@ -1,7 +1,7 @@
 //! Example 3: an estimator of one's own, ambient occlusion.
 //!
 //! ```text
-//! cargo run --release --example 03_own_integrator -- scenes/lecture/surface.pbrt occlusion.png
+//! cargo run --release -p tyndall-formats --example 03_own_integrator -- scenes/lecture/surface.pbrt occlusion.png
 //! ```
 //!
 //! An [`Integrator`] is one function: a camera ray in, one estimate of what arrives along it out. Threads, samples,

@@ -1,7 +1,7 @@
 //! Makes the strands of `scenes/hair`: a lock that hangs in waves, as a `.hair` file. The same file at every call.
 //!
 //! ```text
-//! cargo run --example make_hair -- scenes/hair
+//! cargo run -p tyndall-formats --example make_hair -- scenes/hair
 //! ```
 #![allow(clippy::print_stderr)]
 

@@ -1,7 +1,7 @@
 //! Makes the files of `scenes/milk`: the three surfaces of a glass of milk, and the light of a window.
 //!
 //! ```text
-//! cargo run --example make_milk -- scenes/milk
+//! cargo run -p tyndall-formats --example make_milk -- scenes/milk
 //! ```
 //!
 //! The surfaces are lathed about the y axis, lengths in millimetres. Each parts two substances, and its normals point
