@@ -11,7 +11,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use tyndall_formats::film::save;
 use tyndall_grains::{
     pack::{Pack, Recipe},
+    proxy::Proxy,
     radii::Radii,
+    scattering::Substance,
     settle::settle,
 };
 
@@ -29,6 +31,7 @@ Examples:
   tyndall pack box:20:20:10 --radius lognormal:0.4:0.3 --count 5000 --material salt -o salt.pbrt
   tyndall pack cylinder:10:20 --radius 1 --count 5000 --settle -o poured.pbrt
   tyndall pack jar.ply --grain ellipsoid:1:1:2 --radius 0.5 --settle --material green -o jar.pbrt
+  tyndall pack sphere:8 --radius 0.3 --count 9000 --proxy -o fine.pbrt   then render it with --explicit-grains 4
 
 A radius is that of the ball with the volume of the grain. Ctrl-C ends the packing and keeps what has been packed.
 Lengths are millimetres.")]
@@ -53,6 +56,10 @@ pub(crate) struct PackOptions {
     /// What the grains of the scene are of
     #[arg(long, value_enum, default_value_t = Material::Glass)]
     material: Material,
+    /// Measure what a grain does to light, and write a medium into the scene that stands for the grains after those that
+    /// `tyndall render --explicit-grains` follows
+    #[arg(long, requires = "out")]
+    proxy: bool,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -94,10 +101,33 @@ pub(crate) fn run(options: &PackOptions) -> anyhow::Result<ExitCode> {
         say(&format!("                   {:.5} mm mean free path", bulk.free_path))?;
     }
     if let Some(path) = &options.out {
-        save::replace(path, scene::text(&pack, options.material).as_bytes())?;
+        let proxy = if options.proxy { Some(proxy(&pack, options)?) } else { None };
+        save::replace(path, scene::text(&pack, options.material, proxy.as_ref()).as_bytes())?;
         say(&format!("scene              {}", path.display()))?;
     }
     Ok(if interrupt::requested() { ExitCode::from(interrupt::EXIT) } else { ExitCode::SUCCESS })
+}
+
+/// The medium that stands for the grains, and what was measured for it.
+fn proxy(pack: &Pack, options: &PackOptions) -> anyhow::Result<Proxy> {
+    let absorption = options.material.absorption();
+    let sigma_a =
+        absorption.as_ref().map_or_else(|| vec![0.0], |table| table.iter().map(|(_, sigma_a)| *sigma_a).collect());
+    let substance = Substance { eta: options.material.eta(), sigma_a };
+    let level = options.settle.then(|| pack.level(options.seed));
+    let proxy = pack.proxy(&substance, level, options.seed)?;
+    let names = absorption
+        .map_or_else(|| vec![String::new()], |table| table.iter().map(|(nm, _)| format!(" at {nm} nm")).collect());
+    for ((name, met), (sigma_a, sigma_s)) in
+        names.iter().zip(&proxy.meetings).zip(proxy.sigma_a.iter().zip(&proxy.sigma_s))
+    {
+        say(&format!("a grain{name:<11} returns {:.5}, mean cosine {:.4}", met.albedo, met.mean_cosine))?;
+        say(&format!(
+            "its proxy          {sigma_a:.5} absorbed, {sigma_s:.5} scattered per mm, mean cosine {:.4}",
+            proxy.mean_cosine
+        ))?;
+    }
+    Ok(proxy)
 }
 
 /// The pack, and how much at rest it is if it has settled.

@@ -1,17 +1,19 @@
 //! A pack as a pbrt scene: one grain, placed once for each; a floor beneath, a lamp from the left and above, a dim sky.
-//! The centre of a container that is a mesh stays where its file has it.
+//! The centre of a container that is a mesh stays where its file has it. With a proxy, its body and medium come before the grains.
 
 use std::fmt::Write;
 
+use glam::DVec3;
 use tyndall_grains::{
     form::Form,
     pack::{Grain, Pack},
+    proxy::{Body, Proxy},
 };
 
 use super::material::Material;
 
 /// The scene. Everything is placed in units of the container's size, so that every pack fills its picture.
-pub(super) fn text(pack: &Pack, material: Material) -> String {
+pub(super) fn text(pack: &Pack, material: Material, proxy: Option<&Proxy>) -> String {
     let (half, centre) = (pack.container.half(), pack.container.centre());
     let size = half.length();
     let mut text = format!(
@@ -38,7 +40,7 @@ pub(super) fn text(pack: &Pack, material: Material) -> String {
          Shape \"disk\" \"float radius\" {wide}\n\
          AttributeEnd\n\
          Translate {x} {y} {z}\n\
-         {grain}",
+         {proxy}{grain}",
         pack.grains.len(),
         x = centre.x,
         y = centre.y,
@@ -50,7 +52,8 @@ pub(super) fn text(pack: &Pack, material: Material) -> String {
         disk = 0.8 * size,
         floor = centre.z - half.z,
         wide = 40.0 * size,
-        grain = object(&pack.form, material),
+        proxy = proxy.map_or_else(String::new, |proxy| stand_in(proxy, material)),
+        grain = object(&pack.form, material, proxy.is_some()),
     );
     for grain in &pack.grains {
         place(&mut text, grain);
@@ -58,12 +61,45 @@ pub(super) fn text(pack: &Pack, material: Material) -> String {
     text
 }
 
-/// A grain of radius 1.
-fn object(form: &Form, material: Material) -> String {
+/// The medium that stands for the grains.
+fn stand_in(proxy: &Proxy, material: Material) -> String {
+    let coefficient = |name: &str, values: &[f64]| match material.absorption() {
+        Some(absorption) => format!(
+            "\"spectrum {name}\" [{}]",
+            spectrum(absorption.iter().map(|(nm, _)| *nm).zip(values.iter().copied()))
+        ),
+        None => format!("\"rgb {name}\" [{v:.6e} {v:.6e} {v:.6e}]", v = values[0]),
+    };
+    let phase: Vec<String> = proxy.phase.iter().map(|value| format!("{value:.5e}")).collect();
+    let mut text = format!(
+        "MakeNamedMedium \"grains\" \"string type\" \"homogeneous\" {} {}\n\"float phase\" [{}]\n\
+         AttributeBegin\nMaterial \"interface\"\nMediumInterface \"grains\" \"\"\n",
+        coefficient("sigma_a", &proxy.sigma_a),
+        coefficient("sigma_s", &proxy.sigma_s),
+        phase.join(" ")
+    );
+    text += &match &proxy.body {
+        Body::Ball(radius) => format!("Shape \"sphere\" \"float radius\" {radius}"),
+        Body::Mesh(points, triangles) => mesh(points, triangles),
+    };
+    text + " \"string granular\" \"proxy\"\nAttributeEnd\n"
+}
+
+fn spectrum(values: impl Iterator<Item = (f64, f64)>) -> String {
+    values.map(|(nm, sigma)| format!("{nm} {sigma:.6e}")).collect::<Vec<_>>().join(" ")
+}
+
+fn mesh(points: &[DVec3], triangles: &[[u32; 3]]) -> String {
+    let points: Vec<String> = points.iter().map(|p| format!("{:.7e} {:.7e} {:.7e}", p.x, p.y, p.z)).collect();
+    let indices: Vec<String> = triangles.iter().map(|[a, b, c]| format!("{a} {b} {c}")).collect();
+    format!("Shape \"trianglemesh\" \"point3 P\" [{}] \"integer indices\" [{}]", points.join(" "), indices.join(" "))
+}
+
+/// A grain of radius 1; one that a proxy stands for is marked.
+fn object(form: &Form, material: Material, marked: bool) -> String {
     let mut text = String::new();
     if let Some(absorption) = material.absorption() {
-        let spectrum: Vec<String> = absorption.iter().map(|(nm, sigma_a)| format!("{nm} {sigma_a:.4e}")).collect();
-        let spectrum = spectrum.join(" ");
+        let spectrum = spectrum(absorption.into_iter());
         text = format!(
             "MakeNamedMedium \"inside\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [{spectrum}] \"rgb sigma_s\" [0 0 0]\n"
         );
@@ -73,18 +109,13 @@ fn object(form: &Form, material: Material) -> String {
         text += "MediumInterface \"inside\" \"\"\n";
     }
     match (form, form.triangles()) {
-        (_, Some((points, triangles))) => {
-            let points: Vec<String> = points.iter().map(|p| format!("{:.7e} {:.7e} {:.7e}", p.x, p.y, p.z)).collect();
-            let indices: Vec<String> = triangles.iter().map(|[a, b, c]| format!("{a} {b} {c}")).collect();
-            let (points, indices) = (points.join(" "), indices.join(" "));
-            let _ = writeln!(text, "Shape \"trianglemesh\" \"point3 P\" [{points}] \"integer indices\" [{indices}]");
-        }
+        (_, Some((points, triangles))) => text += &mesh(&points, triangles),
         (Form::Ellipsoid(axes), _) => {
-            let _ = writeln!(text, "Scale {} {} {}\nShape \"sphere\"", axes.x, axes.y, axes.z);
+            let _ = write!(text, "Scale {} {} {}\nShape \"sphere\"", axes.x, axes.y, axes.z);
         }
-        _ => text += "Shape \"sphere\"\n",
+        _ => text += "Shape \"sphere\"",
     }
-    text + "ObjectEnd\n"
+    text + if marked { " \"string granular\" \"grain\"\nObjectEnd\n" } else { "\nObjectEnd\n" }
 }
 
 fn place(text: &mut String, grain: &Grain) {
