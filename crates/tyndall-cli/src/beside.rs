@@ -96,13 +96,13 @@ impl Beside {
     /// Follows some of the paths again, explicitly; `proxied` is what they found, in that time.
     fn compare(&self, scene: &Scene, samples: &[CameraSample], proxied: &[Lanes], time: Duration) {
         let chosen = |sample: &CameraSample| sample.sampler.rng.aside().next_u32().is_multiple_of(EVERY);
-        let (again, proxied): (Vec<_>, Vec<_>) = samples.iter().zip(proxied).filter(|(s, _)| chosen(s)).unzip();
-        let again: Vec<CameraSample> = again.into_iter().copied().collect();
+        let pairs = samples.iter().zip(proxied).filter(|(sample, _)| chosen(sample));
+        let (again, proxied): (Vec<CameraSample>, Vec<Lanes>) = pairs.unzip();
         let start = ThreadTime::now();
         let explicit = self.explicit.li_many(scene, &again, &mut Tally::default());
         let mut sums = Sums { paths: samples.len() as u64, time: [time, start.elapsed()], ..Sums::default() };
         for ((sample, proxied), explicit) in again.iter().zip(proxied).zip(explicit) {
-            sums.add(*proxied, explicit, sample);
+            sums.add(proxied, explicit, sample);
         }
         self.sums.lock().unwrap_or_else(PoisonError::into_inner).merge(&sums);
     }

@@ -134,7 +134,8 @@ fn a_mesh_that_is_not_full_has_no_proxy() {
     assert!(grains.proxy(&substance(1.5, &[0.0]), Some(3.5), 1).is_ok());
 }
 
-/// Glass balls in a ball of radius `reach`, or in their place a medium, under a sky of 1 that is darker below the horizon.
+/// Glass balls in a ball of radius `reach`, or in their place a medium, seen from above under a sky of 1 above the horizon and of
+/// `below` beneath.
 fn heap(grains: &Pack, reach: f64, medium: Homogeneous, below: f32) -> Scene {
     let mut builder = GeometryBuilder::new();
     let group = builder.begin_group();
@@ -161,11 +162,12 @@ fn heap(grains: &Pack, reach: f64, medium: Homogeneous, below: f32) -> Scene {
         reflection_tint: 1.0.into(),
         transmission_tint: 1.0.into(),
     };
+    // From above, looking down.
     let eye = DMat4::from_cols(
         glam::DVec4::X,
-        glam::DVec4::Y,
-        -glam::DVec4::Z,
-        glam::DVec4::new(0.0, 0.0, 10.0 * reach, 1.0),
+        glam::DVec4::Z,
+        -glam::DVec4::Y,
+        glam::DVec4::new(0.0, 10.0 * reach, 0.0, 1.0),
     );
     let camera = Camera {
         view: View {
@@ -212,24 +214,24 @@ fn few_grains_are_a_medium() {
     const COUNT: u64 = 5000;
     let mut differences = [0; 3].map(|_| Vec::new());
     let (mut denser, mut total) = (Vec::new(), 0.0);
+    let scattering = pack("sphere:4", "ball", "1", 1, 1).scattering(&substance(1.5, &[0.0]), 1).unwrap();
     for seed in 0..PACKS {
         let grains = pack("sphere:101", "ball", "1", COUNT, seed);
-        let scattering = grains.scattering(&substance(1.5, &[0.0]), 1).unwrap();
         let sigma = COUNT as f64 * PI / (4.0 / 3.0 * PI * REACH.powi(3));
-        let medium = |sigma_a: f64, sigma_s: f64| Homogeneous {
-            sigma_a: Spectrum::constant(sigma_a as f32),
+        let medium = |sigma_s: f64| Homogeneous {
+            sigma_a: Spectrum::constant(0.0),
             sigma_s: Spectrum::constant(sigma_s as f32),
             emission: None,
             phase: Phase::tabulated(&scattering.phase).unwrap(),
         };
-        let scene = heap(&grains, REACH, medium(0.0, sigma), 0.1);
+        let scene = heap(&grains, REACH, medium(sigma), 0.0);
         let explicit = brightness(&scene, None, 1 + seed).0;
         total += explicit;
         for (differences, grains) in differences.iter_mut().zip([0, 1, 3]) {
             differences.push(brightness(&scene, Some(grains), 101 + seed).0 - explicit);
         }
         // Of light that meets twice as many grains.
-        let dense = heap(&grains, REACH, medium(0.0, 1.1 * sigma), 0.1);
+        let dense = heap(&grains, REACH, medium(1.1 * sigma), 0.0);
         denser.push(brightness(&dense, Some(0), 101 + seed).0 - explicit);
     }
     let z = |differences: &[f64]| {

@@ -61,7 +61,7 @@ fn in_a_furnace_no_light_is_lost_between_grains_and_proxy() {
         world.sky(1.0);
         let scene = world.scene();
         for count in [0, 1, 3] {
-            let found = measure(&scene, &after(count), 20_000);
+            let found = measure(&scene, &after(count), 40_000);
             assert_mean(&format!("{name} after {count}"), &found, [1.0; 3], 0.01);
         }
     }

@@ -121,10 +121,9 @@ fn proxy(pack: &Pack, options: &PackOptions) -> anyhow::Result<Proxy> {
     for ((name, met), (sigma_a, sigma_s)) in
         names.iter().zip(&proxy.meetings).zip(proxy.sigma_a.iter().zip(&proxy.sigma_s))
     {
-        say(&format!("a grain{name:<11} returns {:.5}, mean cosine {:.4}", met.albedo, met.mean_cosine))?;
         say(&format!(
-            "its proxy          {sigma_a:.5} absorbed, {sigma_s:.5} scattered per mm, mean cosine {:.4}",
-            proxy.mean_cosine
+            "a grain{name:<11} returns {:.5}, mean cosine {:.4}; its proxy absorbs {sigma_a:.5}, scatters {sigma_s:.5} per mm",
+            met.albedo, met.mean_cosine
         ))?;
     }
     Ok(proxy)
