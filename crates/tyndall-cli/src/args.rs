@@ -122,6 +122,10 @@ pub(crate) struct RenderOptions {
     /// scene's, or no limit]
     #[arg(long, value_name = "N", help_heading = "How to render")]
     pub(crate) max_depth: Option<u32>,
+    /// Grains that a path leaves before it goes on in the proxy that the scene has for them; faster and not exact: how far
+    /// it is from explicit paths is measured beside, and told [default: the scene's, or explicit to the end]
+    #[arg(long, value_name = "N", help_heading = "How to render")]
+    pub(crate) explicit_grains: Option<u32>,
 }
 
 /// A scene file, and how to read it.

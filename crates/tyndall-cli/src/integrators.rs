@@ -1,21 +1,19 @@
 //! Estimators by name.
 
 use tyndall::{
-    integrator::{Analog, Counted, Deep, Integrator, VolPath},
+    integrator::{Analog, Deep, Integrator, VolPath},
     lecture::Lecture,
 };
 
 use crate::args::IntegratorName;
 
-/// The estimator of a name. `max_depth`, a limit on the scatterings of a path that are `counted`, is for `volpath` alone.
-pub(crate) fn integrator(name: IntegratorName, max_depth: Option<u32>, counted: Counted) -> Box<dyn Integrator> {
+/// The estimator of a name; the settings are for the path tracer alone.
+pub(crate) fn integrator(name: IntegratorName, settings: VolPath) -> Box<dyn Integrator> {
     let lecture = |version: Lecture| -> Box<dyn Integrator> { Box::new(version) };
-    let volpath =
-        |deep: Deep| -> Box<dyn Integrator> { Box::new(VolPath { max_depth, counted, deep, ..VolPath::default() }) };
     match name {
-        IntegratorName::Volpath => volpath(Deep::Together),
-        IntegratorName::VolpathAlone => volpath(Deep::Alone),
-        IntegratorName::VolpathTraced => volpath(Deep::Traced),
+        IntegratorName::Volpath => Box::new(VolPath { deep: Deep::Together, ..settings }),
+        IntegratorName::VolpathAlone => Box::new(VolPath { deep: Deep::Alone, ..settings }),
+        IntegratorName::VolpathTraced => Box::new(VolPath { deep: Deep::Traced, ..settings }),
         IntegratorName::Analog => Box::new(Analog),
         IntegratorName::LectureSurface0 => lecture(Lecture::SurfaceV0),
         IntegratorName::LectureSurface05 => lecture(Lecture::SurfaceV0_5),

@@ -2,6 +2,7 @@
 #![allow(clippy::print_stderr, reason = "talking to a person is what this program is for")]
 
 mod args;
+mod beside;
 mod canvas;
 mod commands;
 mod false_color;

@@ -5,6 +5,7 @@ use tyndall::{film::Film, tally::Tally};
 use tyndall_formats::film::{Image, Metadata};
 
 use crate::{
+    beside::Difference,
     progress::time,
     statistics::{MeanColor, mean_color},
 };
@@ -56,6 +57,8 @@ pub(crate) struct Statistics {
     pub(crate) leaks: u64,
     /// Crossings into more bodies than a path can keep count of.
     pub(crate) lost_bodies: u64,
+    /// Where grains have a proxy: what that does to the picture, and what it saves.
+    pub(crate) proxy: Option<Difference>,
     /// Samples that were not a radiance (NaN, infinite or negative) and count as zero.
     pub(crate) non_finite_samples: u64,
     /// The first of them.
@@ -100,6 +103,7 @@ pub(crate) struct Course {
     pub(crate) ended: End,
     pub(crate) startup: Startup,
     pub(crate) cpu_seconds: f64,
+    pub(crate) proxy: Option<Difference>,
 }
 
 impl Statistics {
@@ -138,6 +142,7 @@ impl Statistics {
             energy_lost_to_limit: tally.truncated_throughput / tally.paths.max(1) as f64,
             leaks: tally.leaks,
             lost_bodies: tally.lost_bodies,
+            proxy: course.proxy,
             non_finite_samples: tally.bad_samples,
             non_finite_list: tally.bad_sample_list.iter().map(BadSample::from).collect(),
         }
@@ -164,6 +169,7 @@ impl Statistics {
                 self.mean_path_length,
             ),
         ];
+        lines.extend(self.proxy.as_ref().map(Difference::sentence));
         if self.truncated_paths > 0 {
             lines.push(format!(
                 "  the depth limit cut {} paths; under light of radiance 1 all around that loses {:.3e} a path",

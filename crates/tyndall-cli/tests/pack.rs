@@ -27,6 +27,59 @@ fn a_pack_renders_at_once_and_is_the_same_again() {
     assert!(rendered.status.success(), "{rendered:?}");
 }
 
+/// The scene has both, grains and their medium; a render with explicit grains tells how far it is from explicit paths, one without
+/// has the bits of a scene without the medium.
+#[test]
+fn a_pack_with_a_proxy_renders_with_few_explicit_grains_and_tells_what_that_does() {
+    let desk = Desk::new("pack-proxy");
+    let render = |scene: &str, out: &str, more: &[&str]| {
+        let rendered =
+            tyndall(&desk, &[&["render", scene, "--resolution", "32x28", "--spp", "16", "-o", out], more].concat());
+        assert!(rendered.status.success(), "{rendered:?}");
+        String::from_utf8_lossy(&rendered.stderr).into_owned()
+    };
+    let pack = ["pack", "sphere:4", "--radius", "1", "--count", "15", "--material", "green"];
+    let packed = tyndall(&desk, &[&pack[..], &["--proxy", "-o", "with.pbrt"]].concat());
+    let told = String::from_utf8_lossy(&packed.stdout);
+    assert!(packed.status.success() && told.contains("a grain at 550 nm  returns 0.9"), "{packed:?}");
+    assert!(tyndall(&desk, &[&pack[..], &["-o", "without.pbrt"]].concat()).status.success());
+    let explicit = render("with.pbrt", "a.exr", &[]);
+    assert!(!explicit.contains("proxy"), "{explicit}");
+    render("without.pbrt", "b.exr", &[]);
+    let compared = tyndall(&desk, &["compare", "a.exr", "b.exr", "--json", "-"]);
+    assert!(String::from_utf8_lossy(&compared.stdout).contains("\"max_difference\": 0.0"), "{compared:?}");
+
+    let told = render("with.pbrt", "c.exr", &["--explicit-grains", "2", "--json", "c.json"]);
+    assert!(told.contains("after 2 explicit grains the proxy, which is not exact"), "{told}");
+    let json: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(desk.0.join("c.json")).unwrap()).unwrap();
+    let proxy = &json["proxy"];
+    assert_eq!(proxy["explicit_grains"], 2);
+    // One in 32 of 32·28·16 paths, 448 on average with a standard deviation of 21.
+    let pairs = proxy["pairs"].as_f64().unwrap();
+    assert!((pairs - 448.0).abs() < 5.0 * 21.0, "{pairs}");
+    for c in 0..3 {
+        let [relative, error] = ["relative", "standard_error"].map(|name| proxy[name][c].as_f64().unwrap());
+        assert!(relative != 0.0 && error > 0.0 && relative.abs() < 0.1, "{proxy}");
+    }
+    // Paths that never reach the proxy are explicit ones, to the bit.
+    render("with.pbrt", "d.exr", &["--explicit-grains", "1000000", "--json", "d.json"]);
+    let json: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(desk.0.join("d.json")).unwrap()).unwrap();
+    assert_eq!(json["proxy"]["relative"], serde_json::json!([0.0, 0.0, 0.0]));
+
+    for (arguments, message) in [
+        (&["render", "without.pbrt", "--explicit-grains", "1"][..], "stands for grains"),
+        (&["render", "with.pbrt", "--explicit-grains", "-1"], "-1"),
+        (&["render", "with.pbrt", "--explicit-grains", "1", "--integrator", "analog"], "knows no proxies"),
+        (&["pack", "sphere:4", "--radius", "1", "--proxy"], "--out"),
+    ] {
+        let refused = tyndall(&desk, arguments);
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        assert!(String::from_utf8_lossy(&refused.stderr).contains(message), "{refused:?}");
+    }
+}
+
 /// A cube, closed, seen from outside.
 const CUBE: &str = "v -4 -4 0\nv 4 -4 0\nv 4 4 0\nv -4 4 0\nv -4 -4 8\nv 4 -4 8\nv 4 4 8\nv -4 4 8\n\
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";

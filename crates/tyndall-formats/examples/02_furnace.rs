@@ -37,8 +37,14 @@ fn ball(albedo: f32) -> Result<Scene, Box<dyn std::error::Error>> {
         phase: Phase::henyey_greenstein(0.5)?,
     };
     let interface = Some(MediumInterface { inside: Some(MediumId(0)), outside: None });
-    let object =
-        Object { name: "ball".into(), material: MaterialId(0), interface, emission: Emission::None, body: None };
+    let object = Object {
+        name: "ball".into(),
+        material: MaterialId(0),
+        interface,
+        emission: Emission::None,
+        body: None,
+        granular: None,
+    };
     let window = [-0.001, 0.001, -0.001, 0.001]; // looks along +z, so narrowly that it is one ray
     let (to_world, filter) = (Transform::IDENTITY, Filter::default());
     let view = View { to_world, model: CameraModel::Perspective(Perspective::pinhole(window)), near: 0.0 };

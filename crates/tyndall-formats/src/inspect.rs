@@ -110,7 +110,7 @@ fn media_out_of_scale(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneE
 /// The longest side of the largest object that has the medium inside, as it stands in the world [length].
 fn largest_body(scene: &Scene, medium: tyndall::medium::MediumId) -> f32 {
     let holds = |o: &tyndall::scene::Object| o.interface.is_some_and(|i| i.inside == Some(medium));
-    let objects = (0..).zip(&scene.objects).filter(|(_, object)| holds(object));
+    let objects = (0..).zip(&*scene.objects).filter(|(_, object)| holds(object));
     let placed = objects.flat_map(|(i, _)| scene.geometry.placed_bounds(ObjectId(i)));
     placed.map(|bounds| bounds.extent().max_element()).fold(0.0, f32::max)
 }

@@ -53,7 +53,7 @@ impl Pack {
 }
 
 /// An isotropic, uniform line through a ball around the origin: through a random point of the disk across its direction.
-fn line(reach: f64, rng: &mut Rng) -> (DVec3, DVec3) {
+pub(crate) fn line(reach: f64, rng: &mut Rng) -> (DVec3, DVec3) {
     let (z, turn) = (2.0 * uniform(rng) - 1.0, TAU * uniform(rng));
     let rim = (1.0 - z * z).sqrt();
     let direction = DVec3::new(rim * turn.cos(), rim * turn.sin(), z);

@@ -1,13 +1,15 @@
 //! Packs of grains: a [`container`], a [`form`], [`radii`], random sequential addition ([`pack`]) or settling ([`settle`]), the
 //! part of space that is grain ([`bulk`]), and the free path of light between the grains, by rays and by formula
-//! ([`free_path`]). Lengths have whatever unit the caller has.
+//! ([`free_path`]); what a grain does to light ([`scattering`]), and the medium that stands for all of them ([`proxy`]). Lengths have whatever unit the caller has.
 
 pub mod bulk;
 pub mod container;
 pub mod form;
 pub mod free_path;
 pub mod pack;
+pub mod proxy;
 pub mod radii;
+pub mod scattering;
 pub mod settle;
 pub mod solid;
 
@@ -75,6 +77,11 @@ pub enum GrainError {
     /// A coefficient of friction.
     #[error("friction of {0}: between 0 and 10 is possible")]
     Friction(f64),
+    /// Grains that have settled and do not fill a mesh: where they end, no medium could.
+    #[error(
+        "the grains do not fill the mesh to its top: a medium can stand for them in a box, a cylinder, a sphere or a full mesh"
+    )]
+    NotFull,
     /// More grains than [`pack::MOST`], or none.
     #[error("{0} grains: between 1 and 10 million can be packed")]
     Count(u64),

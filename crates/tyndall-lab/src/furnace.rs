@@ -10,6 +10,8 @@
 //!
 //! A camera inside of a body of index n sees n², which is what [`Balance::expected`] says.
 
+use std::sync::Arc;
+
 use statrs::distribution::{ContinuousCDF, Normal};
 use tyndall::{
     camera::CameraModel,
@@ -46,10 +48,10 @@ pub fn furnace(scene: Scene, lossless: bool) -> Result<Scene, SetupError> {
         return Err(SetupError::Missing("radiance in what this camera measures: put another into the scene"));
     }
     (camera.filter, camera.exposure, camera.layers) = (Filter::default(), 1.0, Vec::new());
-    for object in &mut objects {
+    for object in Arc::make_mut(&mut objects) {
         object.emission = Emission::None;
     }
-    for medium in &mut media {
+    for medium in Arc::make_mut(&mut media) {
         medium.emission = None;
         if lossless {
             medium.sigma_a = Spectrum::constant(0.0);
@@ -294,7 +296,7 @@ mod tests {
     #[test]
     fn a_surface_that_makes_energy_is_found() {
         let mut scene = ball(Substance { sigma_s: 0.0, sigma_a: 0.0, ..GLOSSY }, false);
-        for material in &mut scene.materials {
+        for material in Arc::make_mut(&mut scene.materials) {
             if let tyndall::material::Material::Dielectric { transmission_tint, .. } = material {
                 *transmission_tint = 1.0025.into();
             }

@@ -167,7 +167,14 @@ impl World {
             }
         });
         let material = MaterialId(self.materials.len() as u32 - 1);
-        self.objects.push(Object { name: String::new(), material, interface, emission: Emission::None, body: None });
+        self.objects.push(Object {
+            name: String::new(),
+            material,
+            interface,
+            emission: Emission::None,
+            body: None,
+            granular: None,
+        });
         Ok(())
     }
 

@@ -11,6 +11,7 @@ pub mod bsdf;
 pub mod camera;
 pub mod feature;
 pub mod film;
+pub mod granular;
 pub mod integrator;
 pub mod lecture;
 pub mod light;

@@ -1,14 +1,17 @@
 //! The resolved, immutable world that a render reads: arrays and typed ids, made once.
 
+use std::sync::Arc;
+
 use crate::{
     camera::Camera,
     film::{Average, LayerKind, Recorded},
+    granular::Granular,
     light::{AreaLight, Light, LightId, LightTable},
     lpe::{Automaton, Names, PathLayer, automaton::BuildError},
     material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Distances, Geometry, Hit, Interaction},
+    shape::{Distances, Geometry, Hit, Interaction, ObjectId},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -30,6 +33,8 @@ pub struct Object {
     pub emission: Emission,
     /// The body that it bounds, if it has a priority.
     pub body: Option<Member>,
+    /// What it is among grains, if it has to do with them.
+    pub granular: Option<Granular>,
 }
 
 /// The lights that the primitives of an object are.
@@ -53,21 +58,23 @@ pub struct Scene {
     /// All surfaces.
     pub geometry: Geometry,
     /// By [`crate::shape::ObjectId`].
-    pub objects: Vec<Object>,
+    pub objects: Arc<[Object]>,
     /// By [`MaterialId`].
-    pub materials: Vec<Material>,
+    pub materials: Arc<[Material]>,
     /// By [`MediumId`].
-    pub media: Vec<Homogeneous>,
+    pub media: Arc<[Homogeneous]>,
     /// All lights.
-    pub lights: LightTable,
+    pub lights: Arc<LightTable>,
     /// How its light is taken apart, if layers ask for that: [`Self::take_apart`].
     pub paths: Option<Automaton>,
+    /// The same world with a proxy in the place of its grains, if there is one: [`Self::with_proxy`].
+    proxied: Option<Box<Self>>,
     /// What follows from the above and is asked for often.
     facts: Facts,
 }
 
 /// What is known about a scene before the first ray.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Facts {
     /// Whether any surface lets light pass unchanged, so that shadow rays have to walk.
     has_null_surfaces: bool,
@@ -96,39 +103,82 @@ impl Scene {
         color: ColorMode,
         camera: Camera,
         geometry: Geometry,
-        mut objects: Vec<Object>,
-        materials: Vec<Material>,
-        media: Vec<Homogeneous>,
+        objects: impl Into<Arc<[Object]>>,
+        materials: impl Into<Arc<[Material]>>,
+        media: impl Into<Arc<[Homogeneous]>>,
         lights: LightTable,
     ) -> Self {
-        let bodies = Body::gather(&mut objects, &materials, &geometry);
-        let is_open = |o: &Object| may_be_open(&materials[o.material.0 as usize], &materials);
-        let extent: Vec<_> =
-            (0..media.len()).map(|i| extent(MediumId(i as u32), &camera, &geometry, &objects, &bodies)).collect();
-        let facts = Facts {
+        let (mut objects, materials) = (objects.into(), materials.into());
+        let bodies = Body::gather(Arc::make_mut(&mut objects), &materials, &geometry);
+        let scene = Self {
+            color,
+            camera,
+            geometry,
+            objects,
+            materials,
+            media: media.into(),
+            lights: Arc::new(lights),
+            paths: None,
+            proxied: None,
+            facts: Facts::default(),
+        };
+        scene.known(bodies, Granular::Proxy)
+    }
+
+    /// Adds the world in which a proxy stands for the grains: the same tables, and the geometry
+    /// [without grains](crate::shape::GeometryBuilder::build_granular).
+    #[must_use]
+    pub fn with_proxy(mut self, geometry: Geometry) -> Self {
+        let twin = Self {
+            color: self.color,
+            camera: self.camera.clone(),
+            geometry,
+            objects: Arc::clone(&self.objects),
+            materials: Arc::clone(&self.materials),
+            media: Arc::clone(&self.media),
+            lights: Arc::clone(&self.lights),
+            paths: None,
+            proxied: None,
+            facts: Facts::default(),
+        };
+        self.proxied = Some(Box::new(twin.known(self.facts.bodies.clone(), Granular::Grain)));
+        self
+    }
+
+    /// With the facts, where the objects that are `absent` are not in its geometry.
+    fn known(mut self, bodies: Vec<Body>, absent: Granular) -> Self {
+        let Self { camera, geometry, objects, materials, lights, .. } = &self;
+        let objects: Vec<_> =
+            (0..).map(ObjectId).zip(objects.iter()).filter(|(_, object)| object.granular != Some(absent)).collect();
+        let is_open = |(_, o): &(ObjectId, &Object)| may_be_open(&materials[o.material.0 as usize], materials);
+        let media = || (0..).map(MediumId).take(self.media.len());
+        let extent: Vec<_> = media().map(|medium| extent(medium, camera, geometry, &objects, &bodies)).collect();
+        self.facts = Facts {
             // A surface of a body may not be there.
             has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
-            lit: (0..)
-                .map(MediumId)
+            lit: media()
                 .zip(&extent)
-                .map(|(m, extent)| opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, &materials, &lights))
+                .map(|(m, extent)| opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, materials, lights))
                 .collect(),
-            deepest: extent.iter().map(|extent| deepest(extent, &geometry)).collect(),
+            deepest: extent.iter().map(|extent| deepest(extent, geometry)).collect(),
             extent,
-            bare_lights: bare_lights(&lights),
+            bare_lights: bare_lights(lights),
             bodies,
-            around_camera: Within::default(),
-            holds_lamp: Vec::new(),
-            distances: None,
+            ..Facts::default()
         };
-        let mut scene = Self { color, camera, geometry, objects, materials, media, lights, paths: None, facts };
         let holds_lamp = |medium| {
-            (0..).map(LightId).take(scene.lights.lights.len()).any(|lamp| scene.small_lamp(medium, lamp).is_some())
+            (0..).map(LightId).take(self.lights.lights.len()).any(|lamp| self.small_lamp(medium, lamp).is_some())
         };
-        scene.facts.holds_lamp = (0..).map(MediumId).take(scene.media.len()).map(holds_lamp).collect();
-        scene.facts.distances = distances(&scene);
-        scene.facts.around_camera = enclosure::around_camera(&scene);
-        scene
+        self.facts.holds_lamp = (0..).map(MediumId).take(self.media.len()).map(holds_lamp).collect();
+        self.facts.distances = distances(&self);
+        self.facts.around_camera = enclosure::around_camera(&self);
+        self
+    }
+
+    /// The same world with a proxy in the place of its grains.
+    #[inline]
+    pub fn proxied(&self) -> Option<&Self> {
+        self.proxied.as_deref()
     }
 
     /// Adds layers of light to what the camera's film records.
@@ -155,6 +205,11 @@ impl Scene {
     #[inline]
     pub fn material(&self, hit: &Interaction) -> &Material {
         &self.materials[self.object(hit).material.0 as usize]
+    }
+
+    /// Whether light may pass unchanged through some of an object's surface.
+    pub fn lets_light_pass(&self, object: &Object) -> bool {
+        may_be_open(&self.materials[object.material.0 as usize], &self.materials)
     }
 
     /// A medium by its index.
@@ -295,12 +350,12 @@ const THIN: f32 = 8.0;
 fn can_be_lit(
     medium: MediumId,
     extent: &Bounds,
-    objects: &[Object],
+    objects: &[(ObjectId, &Object)],
     materials: &[Material],
     lights: &LightTable,
 ) -> bool {
     let touches = |o: &Object| o.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium));
-    objects.iter().any(|o| touches(o) && may_be_open(&materials[o.material.0 as usize], materials))
+    objects.iter().any(|(_, o)| touches(o) && may_be_open(&materials[o.material.0 as usize], materials))
         || *extent == Bounds::EVERYTHING
         || extent.is_empty()
         || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(extent, &b))
@@ -321,11 +376,16 @@ fn opens_straight(medium: MediumId, bodies: &[Body]) -> bool {
 
 /// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
 /// in the world itself.
-fn extent(medium: MediumId, camera: &Camera, geometry: &Geometry, objects: &[Object], bodies: &[Body]) -> Bounds {
+fn extent(
+    medium: MediumId,
+    camera: &Camera,
+    geometry: &Geometry,
+    objects: &[(ObjectId, &Object)],
+    bodies: &[Body],
+) -> Bounds {
     let mut extent = Bounds::EMPTY;
-    for (index, object) in objects.iter().enumerate() {
+    for &(id, object) in objects {
         let Some(interface) = object.interface else { continue };
-        let id = crate::shape::ObjectId(index as u32);
         let is_closed = || match object.body {
             Some(member) => bodies[member.body.0 as usize].closed,
             None => geometry.is_closed(&[id]),

@@ -435,6 +435,7 @@ fn behind_an_open_surface_the_last_one_crossed_holds() {
                     interface: Some(MediumInterface { inside: Some(MediumId(0)), outside: None }),
                     emission: tyndall::scene::Emission::None,
                     body: None,
+                    granular: None,
                 });
                 let turn = glam::DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2);
                 let at = glam::DMat4::from_translation(glam::DVec3::Y * y);

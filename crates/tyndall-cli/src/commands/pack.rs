@@ -18,7 +18,9 @@ use tyndall_formats::{
 };
 use tyndall_grains::{
     pack::{Pack, Recipe},
+    proxy::Proxy,
     radii::Radii,
+    scattering::Substance,
     settle::settle,
 };
 
@@ -37,6 +39,7 @@ Examples:
   tyndall pack cylinder:10:20 --radius 1 --count 5000 --settle -o poured.pbrt
   tyndall pack jar.ply --grain ellipsoid:1:1:2 --radius 0.5 --settle --material green -o jar.pbrt
   tyndall pack heap.obj --grain cube.obj --radius 0.3 --settle --material salt --bare -o salt.pbrt.gz
+  tyndall pack sphere:8 --radius 0.3 --count 9000 --proxy -o fine.pbrt   then render it with --explicit-grains 4
 
 A radius is that of the ball with the volume of the grain. Ctrl-C ends the packing and keeps what has been packed.
 Lengths are millimetres.")]
@@ -61,6 +64,10 @@ pub(crate) struct PackOptions {
     /// What the grains of the scene are of
     #[arg(long, value_enum, default_value_t = Material::Glass)]
     material: Material,
+    /// Measure what a grain does to light, and write a medium into the scene that stands for the grains after those that
+    /// `tyndall render --explicit-grains` follows
+    #[arg(long, requires = "out")]
+    proxy: bool,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -113,11 +120,9 @@ pub(crate) fn run(options: &PackOptions) -> anyhow::Result<ExitCode> {
 
 /// The scene, or its part.
 fn write(path: &Path, pack: &Pack, options: &PackOptions) -> anyhow::Result<()> {
-    let text = if options.bare {
-        scene::grains(pack, options.material, &name(path))
-    } else {
-        scene::text(pack, options.material)
-    };
+    let proxy = if options.proxy { Some(proxy(pack, options)?) } else { None };
+    let grains = |name: &str| scene::grains(pack, options.material, proxy.as_ref(), name);
+    let text = if options.bare { grains(&name(path)) } else { scene::around(pack, &grains("grain")) };
     let bytes = if is_gzip(path) { deflate(text.as_bytes())? } else { text.into_bytes() };
     Ok(save::replace(path, &bytes)?)
 }
@@ -127,6 +132,27 @@ fn name(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let stem = name.split('.').next().unwrap_or_default();
     stem.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect()
+}
+
+/// The medium that stands for the grains, and what was measured for it.
+fn proxy(pack: &Pack, options: &PackOptions) -> anyhow::Result<Proxy> {
+    let absorption = options.material.absorption();
+    let sigma_a =
+        absorption.as_ref().map_or_else(|| vec![0.0], |table| table.iter().map(|(_, sigma_a)| *sigma_a).collect());
+    let substance = Substance { eta: options.material.eta(), sigma_a };
+    let level = options.settle.then(|| pack.level(options.seed));
+    let proxy = pack.proxy(&substance, level, options.seed)?;
+    let names = absorption
+        .map_or_else(|| vec![String::new()], |table| table.iter().map(|(nm, _)| format!(" at {nm} nm")).collect());
+    for ((name, met), (sigma_a, sigma_s)) in
+        names.iter().zip(&proxy.meetings).zip(proxy.sigma_a.iter().zip(&proxy.sigma_s))
+    {
+        say(&format!(
+            "a grain{name:<11} returns {:.5}, mean cosine {:.4}; its proxy absorbs {sigma_a:.5}, scatters {sigma_s:.5} per mm",
+            met.albedo, met.mean_cosine
+        ))?;
+    }
+    Ok(proxy)
 }
 
 /// The pack, and how much at rest it is if it has settled.

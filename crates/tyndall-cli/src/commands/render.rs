@@ -7,7 +7,7 @@ use cpu_time::ProcessTime;
 use rayon::ThreadPool;
 use tyndall::{
     film::{Crop, Film},
-    integrator::Counted,
+    integrator::{Integrator, VolPath},
     render::{Rendering, Settings, render},
     sampling::SamplerKind,
     spectrum::ColorMode,
@@ -16,6 +16,7 @@ use tyndall_formats::film::{Image, Metadata};
 
 use crate::{
     args::{ColorName, IntegratorName, RenderOptions, SamplerName, word},
+    beside::Beside,
     integrators::integrator,
     interrupt,
     load::{Loaded, load},
@@ -40,7 +41,8 @@ pub(crate) fn run(options: &RenderOptions) -> anyhow::Result<ExitCode> {
         .install(|| load(&options.input, options.resolution, options.color.map(color_mode), options.layers.as_ref()))?;
     loaded.warn();
     let settings = settings(options, &loaded)?;
-    let job = Job { options, loaded: &loaded, settings, outputs: &outputs, pool, start: Instant::now() };
+    let beside = beside(options, &loaded)?;
+    let job = Job { options, loaded: &loaded, settings, beside, outputs: &outputs, pool, start: Instant::now() };
 
     let cpu = ProcessTime::now();
     let rendering = job.render();
@@ -73,6 +75,8 @@ struct Job<'a> {
     options: &'a RenderOptions,
     loaded: &'a Loaded,
     settings: Settings,
+    /// Paths with proxies of grains, if there are such.
+    beside: Option<Beside>,
     outputs: &'a Outputs,
     pool: ThreadPool,
     start: Instant,
@@ -81,9 +85,8 @@ struct Job<'a> {
 impl Job<'_> {
     fn render(&self) -> Rendering {
         let Self { options, loaded, settings, .. } = self;
-        let said = &loaded.desc.integrator;
-        let max_depth = options.max_depth.or(said.max_depth.map(|depth| depth.value));
-        let integrator = integrator(options.integrator, max_depth, said.counted);
+        let alone = integrator(options.integrator, path_tracer(options, loaded));
+        let integrator: &dyn Integrator = self.beside.as_ref().map_or(alone.as_ref(), |beside| beside);
         let camera = &loaded.scene.camera;
         let crop = settings.crop.unwrap_or(Crop::full(camera.width, camera.height));
         let pixels = u64::from(crop.width()) * u64::from(crop.height());
@@ -92,7 +95,7 @@ impl Job<'_> {
         let save = |film: &Film| self.outputs.write(&Image::of(film, self.metadata(film)));
         let watch = Watch::new(progress, options.time, save, tev);
 
-        let rendering = self.pool.install(|| render(&loaded.scene, integrator.as_ref(), settings, &watch));
+        let rendering = self.pool.install(|| render(&loaded.scene, integrator, settings, &watch));
         watch.progress.finish();
         rendering
     }
@@ -135,9 +138,36 @@ impl Job<'_> {
             ended,
             startup: Startup { load: self.loaded.load_seconds, build: self.loaded.build_seconds },
             cpu_seconds,
+            proxy: self.beside.as_ref().map(Beside::difference),
         };
         Statistics::new(image, image.metadata.clone().unwrap_or_default(), &rendering.tally, course)
     }
+}
+
+/// The settings of paths among grains without a proxy.
+fn path_tracer(options: &RenderOptions, loaded: &Loaded) -> VolPath {
+    let said = &loaded.desc.integrator;
+    let max_depth = options.max_depth.or(said.max_depth.map(|depth| depth.value));
+    VolPath { max_depth, counted: said.counted, ..VolPath::default() }
+}
+
+/// Paths with proxies of grains, if they are asked for.
+fn beside(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Option<Beside>> {
+    let said = loaded.desc.integrator.explicit_grains.map(|grains| grains.value);
+    let Some(grains) = options.explicit_grains.or(said) else { return Ok(None) };
+    ensure!(
+        loaded.scene.proxied().is_some(),
+        "no shape of this scene stands for grains: `tyndall pack --proxy` writes one, or leave out --explicit-grains"
+    );
+    let explicit = path_tracer(options, loaded);
+    let proxied = VolPath { explicit_grains: Some(grains), ..explicit };
+    let [proxied, explicit] = [proxied, explicit].map(|settings| integrator(options.integrator, settings));
+    ensure!(
+        proxied.apart().is_some(),
+        "{} knows no proxies of grains: render with volpath, or without them",
+        word(&options.integrator)
+    );
+    Ok(Some(Beside::new(proxied, explicit, grains)))
 }
 
 /// What the command line says, and where it is silent, the scene.
@@ -148,7 +178,7 @@ fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings
         word(&options.integrator),
     );
     ensure!(
-        loaded.scene.paths.is_none() || integrator(options.integrator, None, Counted::default()).apart().is_some(),
+        loaded.scene.paths.is_none() || integrator(options.integrator, VolPath::default()).apart().is_some(),
         "{} cannot take light apart: leave out the layers (--layers '' if the scene asks for them), or render with \
          volpath",
         word(&options.integrator),

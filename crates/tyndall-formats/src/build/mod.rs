@@ -2,6 +2,7 @@
 
 mod camera;
 mod emitters;
+mod granular;
 pub(crate) mod lights;
 pub(crate) mod made;
 mod materials;
@@ -110,6 +111,10 @@ impl Builder<'_> {
         let (shapes, lights, camera) = (shapes?, lights?, camera?);
         let table = LightTable::new(shapes.lights.into_iter().chain(lights).collect());
         let mut scene = Scene::new(self.color, camera, shapes.geometry, shapes.objects, materials, media, table);
+        if let Some(proxied) = shapes.proxied {
+            scene = scene.with_proxy(proxied);
+        }
+        self.check_granular(&scene, &shapes.granular)?;
         self.take_apart(&mut scene, shapes.names)?;
         Some(scene)
     }

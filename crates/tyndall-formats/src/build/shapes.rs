@@ -29,9 +29,13 @@ use crate::{
 };
 
 /// All shapes of a scene.
-pub(super) struct Shapes {
+pub(super) struct Shapes<'a> {
     pub(super) geometry: Geometry,
+    /// Without grains, where a proxy stands for them.
+    pub(super) proxied: Option<Geometry>,
     pub(super) objects: Vec<Object>,
+    /// Grains and proxies, and their objects.
+    pub(super) granular: Vec<(&'a ShapeDesc, Vec<ObjectId>)>,
     pub(super) lights: Vec<Light>,
     /// What objects and lights are called.
     pub(super) names: Names,
@@ -47,11 +51,13 @@ struct Gathered<'a> {
     /// What each object is called, and its material.
     names: Vec<Vec<String>>,
     emitters: Vec<Shining<'a>>,
+    /// Grains and proxies, and their objects.
+    granular: Vec<(&'a ShapeDesc, Vec<ObjectId>)>,
     painting: Painting,
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn shapes(&mut self) -> Option<Shapes> {
+    pub(super) fn shapes(&mut self) -> Option<Shapes<'a>> {
         let desc = self.desc;
         let mut gathered = Gathered::default();
         let metered = desc.camera.metered_shapes();
@@ -71,8 +77,9 @@ impl<'a> Builder<'a> {
                 self.errors.push(SceneError::at(instance.span, e.to_string()));
             }
         }
-        let geometry = match gathered.builder.build() {
-            Ok(geometry) => geometry,
+        let granular = |id: ObjectId| gathered.objects.get(id.0 as usize).and_then(|object| object.granular);
+        let (geometry, proxied) = match gathered.builder.build_granular(granular) {
+            Ok(built) => built,
             Err(e) => return self.fail(SceneError::new(e.to_string())),
         };
         self.paint(&geometry, gathered.painting);
@@ -88,7 +95,15 @@ impl<'a> Builder<'a> {
         for (index, objects) in objects {
             meters.insert(index, surfaces(&geometry, objects));
         }
-        Some(Shapes { geometry, objects: gathered.objects, lights, names, meters })
+        Some(Shapes {
+            geometry,
+            proxied,
+            objects: gathered.objects,
+            granular: gathered.granular,
+            lights,
+            names,
+            meters,
+        })
     }
 
     /// The surface of a shape on its own.
@@ -196,6 +211,9 @@ impl<'a> Builder<'a> {
         let body = BodyId(gathered.objects.len() as u32);
         let body = desc.priority.map(|priority| Member { body, priority: priority.value });
         self.check_priority(desc)?;
+        if desc.granular.is_some() {
+            gathered.granular.push((desc, added.iter().filter_map(|added| added.as_ref().ok()).copied().collect()));
+        }
         for object in added {
             self.bind(gathered, desc, object, body)?;
         }
@@ -268,6 +286,7 @@ impl<'a> Builder<'a> {
             }),
             emission: Emission::None,
             body,
+            granular: desc.granular.map(|granular| granular.value),
         });
         if let Some(light) = &desc.emission {
             let by_face =

@@ -47,6 +47,7 @@ pub use material::{
 pub use medium::{Coefficients, MediumDesc, MediumInterface, PhaseDesc};
 pub use principled::{BurleyDesc, PrincipledDesc, PrincipledThinDesc};
 pub use settings::{Ignored, IntegratorDesc, LengthUnit, Options, SamplerDesc};
+pub(crate) use shape::granular;
 pub use shape::{
     CurveDesc, DisplacementDesc, GroupDesc, InstanceDesc, MeshDesc, PatchDesc, Radii, ShapeDesc, ShapeKind, StrandsDesc,
 };

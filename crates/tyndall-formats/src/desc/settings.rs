@@ -88,6 +88,8 @@ pub struct IntegratorDesc {
     pub max_depth: Option<Spanned<u32>>,
     /// What counts as a scattering for that.
     pub counted: Counted,
+    /// Grains that a path leaves before it goes on in their proxy, if the user wants that: see [`tyndall::granular`].
+    pub explicit_grains: Option<Spanned<u32>>,
     /// Scatterings before Russian roulette may begin, if the user says.
     pub rr_depth: Option<Spanned<u32>>,
     /// Whether emission that the camera sees directly is left out.

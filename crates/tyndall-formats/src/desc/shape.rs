@@ -1,7 +1,10 @@
 //! Shapes, groups and instances. Geometry stays in the shape's own space.
 
 use glam::DMat4;
+use tyndall::granular::Granular;
 use tyndall::shape::{Basis, DiskMapping, SpherePart, Style, Turn};
+
+use crate::error::SceneError;
 
 use super::{AreaLightDesc, FileRef, GroupId, MaterialId, MediumInterface, Span, Spanned, Varying};
 
@@ -28,6 +31,28 @@ pub struct ShapeDesc {
     pub interface: Option<MediumInterface>,
     /// Its priority, if it is a body that may overlap others: of those at a point the highest is there.
     pub priority: Option<Spanned<i32>>,
+    /// What it is among grains, if the user says.
+    pub granular: Option<Spanned<Granular>>,
+}
+
+/// The words of scene files for what a shape is among grains.
+const GRANULAR: [(&str, Granular); 2] = [("grain", Granular::Grain), ("proxy", Granular::Proxy)];
+
+impl ShapeDesc {
+    /// The word for what it is among grains.
+    pub(crate) fn granular_word(&self) -> Option<&'static str> {
+        let granular = self.granular?.value;
+        GRANULAR.into_iter().find(|(_, known)| *known == granular).map(|(word, _)| word)
+    }
+}
+
+/// What a shape is among grains, by its word.
+pub(crate) fn granular(given: Spanned<&str>) -> Result<Spanned<Granular>, SceneError> {
+    match GRANULAR.into_iter().find(|(word, _)| *word == given.value) {
+        Some((_, granular)) => Ok(given.map(|_| granular)),
+        None => Err(SceneError::at(given.span, format!("nothing is \"{}\" among grains", given.value))
+            .suggest(given.value, GRANULAR.map(|known| known.0))),
+    }
 }
 
 /// The geometry of a shape. Lengths are scene units before [`ShapeDesc::to_world`].

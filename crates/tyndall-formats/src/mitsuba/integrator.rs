@@ -48,6 +48,9 @@ pub(super) fn integrator<'t>(builder: &mut Builder<'t>, element: &'t Element) ->
     } else {
         depths(&mut object, report)
     };
+    // tyndall's own.
+    let explicit_grains = object.integer("explicit_grains", 0, report);
+    let explicit_grains = explicit_grains.map(|grains| grains.map(|n| u32::try_from(n).unwrap_or(u32::MAX)));
     if name == "volpathmis" {
         object.ignore(&["use_spectral_mis"], "coloured media are always sampled with spectral MIS", report);
     }
@@ -62,6 +65,7 @@ pub(super) fn integrator<'t>(builder: &mut Builder<'t>, element: &'t Element) ->
         name: Spanned::new(name.into(), element.span_of("type")),
         max_depth,
         counted: if name.contains("volpath") { Counted::Turns } else { Counted::Scatterings },
+        explicit_grains,
         rr_depth,
         hide_emitters,
         layers,

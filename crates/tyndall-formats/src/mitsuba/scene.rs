@@ -237,6 +237,7 @@ pub(super) fn default_integrator(span: Span) -> IntegratorDesc {
         name,
         max_depth: None,
         counted: Counted::default(),
+        explicit_grains: None,
         rr_depth: None,
         hide_emitters: false,
         layers: Vec::new(),

@@ -10,7 +10,7 @@ use super::tree::Element;
 use super::words;
 use crate::desc::{
     GroupDesc, GroupId, InstanceDesc, MaterialDesc, MaterialId, MaterialKind, MediumInterface, Radii, ShapeDesc,
-    ShapeKind, StrandsDesc, Varying,
+    ShapeKind, StrandsDesc, Varying, granular,
 };
 use crate::error::SceneError;
 use crate::source::Spanned;
@@ -55,6 +55,8 @@ impl<'t> Builder<'t> {
         // tyndall's own.
         let priority = object.integer("priority", i32::MIN.into(), report);
         let priority = priority.map(|p| p.map(|p| i32::try_from(p).unwrap_or(i32::MAX)));
+        let granular = object.string("granular", report).map(granular);
+        let granular = granular.and_then(|found| found.map_err(|error| report.errors.push(error)).ok());
         object.ignore(&["silhouette_sampling_weight"], "silhouettes are not sampled", report);
         object.finish(report);
         Some(ShapeDesc {
@@ -68,6 +70,7 @@ impl<'t> Builder<'t> {
             emission,
             interface,
             priority,
+            granular,
         })
     }
 

@@ -41,7 +41,7 @@ impl Reader {
         }
         let (coefficients, phase) = match mixed {
             Some(mixed) => (mixed, PhaseDesc::Isotropic),
-            None => (coefficients(&mut p), phase(&mut p)),
+            None => (coefficients(&mut p), phase_or_table(&mut p)),
         };
         let concentration = concentration(&mut p, &coefficients);
         let desc = MediumDesc {
@@ -105,7 +105,7 @@ fn coefficients(p: &mut Params) -> Coefficients {
                     .related(preset.span, "the preset"),
             );
         }
-        if !reduced.value && p.has("g") {
+        if !reduced.value && (p.has("g") || p.has("phase")) {
             p.error(
                 SceneError::at(reduced.span, "full scattering comes with its own mean cosine")
                     .help("leave out \"g\", or \"bool reduced\" false"),
@@ -115,6 +115,20 @@ fn coefficients(p: &mut Params) -> Coefficients {
     }
     let [sigma_a, sigma_s] = given.map(|s| s.unwrap_or(Spanned::new(SpectrumDesc::Constant(1.0), p.span)));
     Coefficients::AbsorptionScattering { sigma_a, sigma_s }
+}
+
+/// tyndall's own: `"float phase"`, relative values at regularly spaced cosines, from straight back to straight on.
+fn phase_or_table(p: &mut Params) -> PhaseDesc {
+    let has_g = p.has("g");
+    let phase = phase(p);
+    let Some(values) = p.any_floats("phase") else { return phase };
+    if has_g {
+        p.error(
+            SceneError::at(values.span, "a medium has either a table of its phase function or a mean cosine")
+                .help("leave out \"g\""),
+        );
+    }
+    PhaseDesc::Tabulated { values }
 }
 
 pub(super) fn phase(p: &mut Params) -> PhaseDesc {

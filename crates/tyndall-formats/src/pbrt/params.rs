@@ -194,6 +194,12 @@ impl Params {
         self.counted(name, &param, count)
     }
 
+    /// As many numbers as there are.
+    pub(super) fn any_floats(&mut self, name: &'static str) -> Option<Spanned<Vec<f64>>> {
+        let param = self.take(name, &[ParamType::Float])?;
+        Some(Spanned::new(param.values.numbers.clone(), param.span))
+    }
+
     pub(super) fn integers(&mut self, name: &'static str, count: usize) -> Option<Spanned<Vec<f64>>> {
         let param = self.take(name, &[ParamType::Integer])?;
         self.counted(name, &param, count)

@@ -70,6 +70,7 @@ impl Settings {
                 name: named("volpath"),
                 max_depth: None,
                 counted: Counted::Scatterings,
+                explicit_grains: None,
                 rr_depth: None,
                 hide_emitters: false,
                 layers: Vec::new(),
@@ -199,6 +200,8 @@ impl Reader {
         }
         let mut p = self.params("integrator", &mut s, &[]);
         let max_depth = p.count_opt("maxdepth", 0);
+        // tyndall's own.
+        let explicit_grains = p.count_opt("explicitgrains", 0);
         p.ignore("lightsampler", "tyndall chooses lights in its own way");
         if p.boolean("regularize", false).value {
             p.error(
@@ -222,6 +225,7 @@ impl Reader {
             name: name.map(Into::into),
             max_depth,
             counted: Counted::Scatterings,
+            explicit_grains,
             rr_depth: None,
             hide_emitters: false,
             layers: Vec::new(),

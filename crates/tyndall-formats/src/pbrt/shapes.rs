@@ -1,5 +1,6 @@
 //! `Shape`.
 
+use tyndall::granular::Granular;
 use tyndall::shape::{DiskMapping, SpherePart, Turn};
 
 use super::Reader;
@@ -7,7 +8,7 @@ use super::param::ParamType;
 use super::params::Params;
 use super::parser::Statement;
 use super::textures::Textures;
-use crate::desc::{DisplacementDesc, MaterialDesc, MaterialId, MeshDesc, PatchDesc, ShapeDesc, ShapeKind};
+use crate::desc::{DisplacementDesc, MaterialDesc, MaterialId, MeshDesc, PatchDesc, ShapeDesc, ShapeKind, granular};
 use crate::error::SceneError;
 use crate::source::Spanned;
 
@@ -36,10 +37,10 @@ impl Reader {
         };
         let opacity = p.number("alpha", &self.textures, |_| true).filter(|a| a.value.number().is_none_or(|a| a < 1.0));
         // tyndall's own.
-        let (priority, name) = (p.integer_opt("priority"), p.name());
+        let (priority, name, granular) = (p.integer_opt("priority"), p.name(), among_grains(&mut p));
         self.finish_params(p);
         if let Some(kind) = kind {
-            let shape = ShapeDesc { name, opacity, priority, ..self.bound(&s, kind) };
+            let shape = ShapeDesc { name, opacity, priority, granular, ..self.bound(&s, kind) };
             self.place(shape);
         }
     }
@@ -66,6 +67,7 @@ impl Reader {
             // What is the same on both sides is no boundary: empty space there leaves the medium as it is.
             interface: now.interface.filter(|i| (i.inside, i.outside) != (None, None)),
             priority: None,
+            granular: None,
         }
     }
 
@@ -89,6 +91,12 @@ impl Reader {
             group.shapes.push(shape);
         }
     }
+}
+
+/// What it is among grains.
+fn among_grains(p: &mut Params) -> Option<Spanned<Granular>> {
+    let given = p.string_opt("granular")?;
+    granular(Spanned::new(&given.value, given.span)).map_err(|error| p.error(error)).ok()
 }
 
 fn sphere(p: &mut Params) -> ShapeKind {

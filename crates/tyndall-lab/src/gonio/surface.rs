@@ -47,7 +47,8 @@ impl Surface {
         };
         builder.add_mesh(square, &Transform::IDENTITY, false)?;
         let name = String::new();
-        let objects = vec![Object { name, material: id, interface: None, emission: Emission::None, body: None }];
+        let objects =
+            vec![Object { name, material: id, interface: None, emission: Emission::None, body: None, granular: None }];
         let lights = LightTable::new(Vec::new());
         let scene = Scene::new(color, camera, builder.build()?, objects, materials, media, lights);
         let travel = Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt() as f32, 0.0, -cosine as f32);

@@ -21,7 +21,7 @@ fn all(_: &Sums) -> Verdict {
 /// A scene that holds nothing but a material.
 fn scene(material: Material) -> Scene {
     let mut scene = World::default().build(&Substance::VACUUM, glam::DVec3::ZERO).unwrap();
-    scene.materials = vec![material];
+    scene.materials = vec![material].into();
     scene
 }
 

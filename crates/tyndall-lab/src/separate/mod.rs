@@ -29,6 +29,8 @@ use observed::Observed;
 pub use observed::{Parts, truth};
 pub use pattern::{Pattern, Projection};
 
+use std::sync::Arc;
+
 use glam::{DMat4, Vec3};
 use tyndall::{
     camera::CameraModel,
@@ -84,10 +86,10 @@ impl Stage {
         let Scene { color, mut camera, geometry, mut objects, materials, mut media, .. } = scene;
         // A pixel should see little of the pattern, and nothing of it with a negative weight.
         (camera.filter, camera.layers) = (Filter::default(), Vec::new());
-        for object in &mut objects {
+        for object in Arc::make_mut(&mut objects) {
             object.emission = Emission::None;
         }
-        for medium in &mut media {
+        for medium in Arc::make_mut(&mut media) {
             medium.emission = None;
         }
         let lights = LightTable::new(vec![Light::Projector(Box::new(projector))]);
@@ -123,7 +125,7 @@ impl Stage {
     }
 
     fn insert(&mut self, texture: Texture) {
-        if let Some(Light::Projector(projector)) = self.0.lights.lights.first_mut() {
+        if let Some(Light::Projector(projector)) = Arc::make_mut(&mut self.0.lights).lights.first_mut() {
             projector.slide.texture = texture;
         }
     }

@@ -4,6 +4,8 @@
 //! expected numbers stay what they are. A table that nothing can fail proves nothing: the module `slow` of the tests
 //! puts each of the defects that a table claims to see into its experiments and demands that they fail.
 
+use std::sync::Arc;
+
 use tyndall::{
     material::{Index, Material},
     phase::Phase,
@@ -44,7 +46,7 @@ impl Defect {
     /// The scene with the defect.
     pub(crate) fn spoil(self, mut scene: Scene) -> Scene {
         let (more, less) = (1.0 + self.size, 1.0 - self.size);
-        for medium in &mut scene.media {
+        for medium in Arc::make_mut(&mut scene.media) {
             match self.fault {
                 Fault::Scattering => medium.sigma_s = medium.sigma_s.clone().scaled(more),
                 Fault::Absorption => medium.sigma_a = medium.sigma_a.clone().scaled(more),
@@ -64,7 +66,7 @@ impl Defect {
                 Fault::Index | Fault::Fresnel | Fault::Reflectance => {}
             }
         }
-        for material in &mut scene.materials {
+        for material in Arc::make_mut(&mut scene.materials) {
             match (self.fault, material) {
                 (Fault::Index, Material::Dielectric { eta: Index::Constant(eta), .. }) => *eta *= more,
                 (Fault::Fresnel, Material::Dielectric { reflection_tint, .. }) => *reflection_tint = less.into(),

@@ -36,9 +36,18 @@ impl TakesApart for VolPath {
 }
 
 impl VolPath {
+    /// A path at the camera.
+    fn begin(&self, scene: &Scene, seen: &CameraSample) -> Path {
+        let mut path = Path::new(scene, seen);
+        if let Some(grains) = self.explicit_grains {
+            path.limit_grains(scene, grains);
+        }
+        path
+    }
+
     /// Follows a path to its end.
     fn follow(&self, scene: &Scene, seen: &CameraSample, sink: &mut impl Sink, tally: &mut Tally) {
-        let mut path = Path::new(scene, seen);
+        let mut path = self.begin(scene, seen);
         while path.step(scene, self, sink, tally) == Status::Alive {
             if let Some(mut walker) = path.begin_walk(self) {
                 let phase = &scene.medium(walker.medium).phase;
@@ -51,7 +60,7 @@ impl VolPath {
     /// Follows many to theirs, each with a sink of its own.
     fn follow_many<S: Sink>(&self, scene: &Scene, samples: &[CameraSample], sinks: &mut [S], tally: &mut Tally) {
         if self.deep == Deep::Together && !scene.media.is_empty() {
-            let paths = samples.iter().map(|seen| Path::new(scene, seen)).enumerate();
+            let paths = samples.iter().map(|seen| self.begin(scene, seen)).enumerate();
             return pool::follow(scene, &mut Estimates { scene, settings: self, sinks }, paths, tally);
         }
         for (seen, sink) in samples.iter().zip(sinks) {

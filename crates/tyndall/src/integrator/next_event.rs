@@ -4,7 +4,7 @@
 use super::{Deep, VolPath, volpath::Sink, walk::Announced};
 use crate::{
     light::Reference,
-    math::{Bounds, Vec2, Vec3},
+    math::{Bounds, Ray, Vec2, Vec3},
     medium::{Inside, Within},
     path::{Attempt, History, Path, PathWeights, Source, Turn, Vertex, event::Aimed, shadow},
     phase::Phase,
@@ -33,10 +33,20 @@ impl Path {
             return;
         }
         let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
+        let origin = vertex.shadow_origin(sample.dir);
+        let mut proxied_within;
+        let (scene, inside, within) = match self.proxied_towards(scene, vertex, sample.dir) {
+            None => (scene, inside, within),
+            Some(proxied) => {
+                proxied_within = *within;
+                let ray = Ray::new(origin, sample.dir);
+                let inside = proxied.enter_proxy(&ray, inside, &mut proxied_within, &self.wavelengths);
+                (proxied, inside, &proxied_within)
+            }
+        };
         if !scene.light_can_reach(inside.id()) {
             return;
         }
-        let origin = vertex.shadow_origin(sample.dir);
         let wavelengths = (&self.wavelengths, self.hero);
         let arrives =
             shadow::transmittance(scene, origin, sample.dir, &sample.target, (inside, within), wavelengths, tally);
@@ -61,6 +71,7 @@ impl Path {
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
+        let scene = self.world(scene);
         let Announced { p, dir, mut rng, .. } = *announced;
         let Some((attempt, weights)) = self.on_walk(scene, announced, &mut rng) else { return };
         let (mut history, Some(medium)) = (self.history, self.inside.id()) else { return };

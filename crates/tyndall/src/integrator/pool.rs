@@ -39,7 +39,8 @@ struct Pool<M> {
 /// Follows all of `members` to their end.
 pub fn follow<C: Crew>(scene: &Scene, crew: &mut C, members: impl IntoIterator<Item = C::Member>, tally: &mut Tally) {
     let walks = (0..scene.media.len()).map(|i| MediumId(i as u32));
-    let walks = walks.map(|id| Walks::new(id, scene.light_can_reach(Some(id)))).collect();
+    let lit = |id| std::iter::once(scene).chain(scene.proxied()).any(|world| world.light_can_reach(Some(id)));
+    let walks = walks.map(|id| Walks::new(id, lit(id))).collect();
     let mut pool = Pool { members: Vec::with_capacity(PATHS), free: Vec::new(), walks };
     let mut waiting = members.into_iter();
     let mut ended = Vec::with_capacity(PATHS);

@@ -22,11 +22,20 @@ pub struct VolPath {
     pub roulette: f32,
     /// How paths deep inside a medium are followed.
     pub deep: Deep,
+    /// Grains that a path leaves before it goes on in their proxy, which is not exact: see [`crate::granular`]. `None` (the
+    /// default) follows all paths among grains to their end.
+    pub explicit_grains: Option<u32>,
 }
 
 impl Default for VolPath {
     fn default() -> Self {
-        Self { max_depth: None, counted: Counted::Scatterings, roulette: 0.25, deep: Deep::default() }
+        Self {
+            max_depth: None,
+            counted: Counted::Scatterings,
+            roulette: 0.25,
+            deep: Deep::default(),
+            explicit_grains: None,
+        }
     }
 }
 
@@ -82,6 +91,7 @@ impl Path {
     /// Finds the next event and responds to it.
     #[inline]
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
+        let scene = self.world(scene);
         let lamp = self.lamp(scene, settings);
         let (event, aimed) = self.next_event_past(scene, lamp, tally);
         if let Some(aimed) = aimed {
@@ -284,6 +294,7 @@ impl Path {
                 self.enter(scene, hit);
             }
             self.around.leave(hit.ng, self.ray.dir);
+            self.leave_grain(scene, hit, scattered.crossed);
         }
         Status::Alive
     }

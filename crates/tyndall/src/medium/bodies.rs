@@ -163,7 +163,7 @@ impl Within {
     }
 
     /// Notes that a surface without a priority is crossed, to the side where `cos_normal = dir · n`.
-    pub(super) fn cross_written(&mut self, interface: &MediumInterface, cos_normal: f32) {
+    pub(crate) fn cross_written(&mut self, interface: &MediumInterface, cos_normal: f32) {
         let medium = interface.towards(cos_normal);
         if self.len == 0 {
             self.around = medium;

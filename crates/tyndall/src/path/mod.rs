@@ -17,6 +17,7 @@ pub use vertex::Vertex;
 pub use weights::PathWeights;
 
 use crate::{
+    granular::Stage,
     integrator::CameraSample,
     light::Reference,
     math::Ray,
@@ -49,6 +50,8 @@ pub struct Path {
     pub sampler: Sampler,
     /// What it has been through.
     pub history: History,
+    /// How far it has come among grains.
+    pub stage: Stage,
     /// The last vertex from which a light could have been sampled.
     pub last_vertex: Reference,
 }
@@ -68,6 +71,7 @@ impl Path {
             hero: ((u_hero * 4.0) as usize).min(3),
             sampler,
             history: History::default(),
+            stage: Stage::default(),
             last_vertex: Reference { p: ray.origin, normal: None },
         }
     }

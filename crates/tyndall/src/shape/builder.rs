@@ -8,7 +8,7 @@ use super::{
     },
     instance::{Instance, Placement},
 };
-use crate::math::Transform;
+use crate::{granular::Granular, math::Transform};
 
 /// Why a shape cannot be part of a scene.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -231,19 +231,48 @@ impl GeometryBuilder {
     ///
     /// If there are too many shapes for one tree.
     pub fn build(self) -> Result<Geometry, ShapeError> {
+        Ok(self.build_granular(|_| None)?.0)
+    }
+
+    /// Builds the trees of a scene with grains: the geometry without their proxy, and if there is one, that without the
+    /// grains. A group of grains has nothing else in it.
+    ///
+    /// # Errors
+    /// If there are too many shapes for one tree.
+    pub fn build_granular(
+        self,
+        granular: impl Fn(ObjectId) -> Option<Granular>,
+    ) -> Result<(Geometry, Option<Geometry>), ShapeError> {
         let groups = self.groups.iter().map(|group| self.tree(group, Vec::new())).collect::<Result<Vec<_>, _>>()?;
-        let instances = (0..self.instances.len()).flat_map(|i| self.instance_entries(i as u32, &groups)).collect();
-        let world = self.tree(&self.world, instances)?;
+        let is = |object: &u32, what| granular(ObjectId(*object)) == Some(what);
+        let without = |absent| {
+            let shown = |group: u32| !self.groups[group as usize].iter().any(|object| is(object, absent));
+            let instances = (0..).zip(&self.instances).filter(|(_, instance)| shown(instance.group));
+            let entries = instances.flat_map(|(index, _)| self.instance_entries(index, &groups)).collect();
+            self.tree(self.world.iter().filter(|object| !is(object, absent)), entries)
+        };
+        let world = without(Granular::Proxy)?;
+        let proxied = if self.world.iter().any(|object| is(object, Granular::Proxy)) {
+            Some(without(Granular::Grain)?)
+        } else {
+            None
+        };
         let mut group = vec![None; self.shapes.len()];
         for (id, objects) in (0..).zip(&self.groups) {
             for object in objects {
                 group[*object as usize] = Some(id);
             }
         }
-        Ok(Geometry::new(self.shapes, group, world, groups, self.instances))
+        let geometry = Geometry::new(self.shapes, group, world, groups, self.instances);
+        let proxied = proxied.map(|world| geometry.with_world(world));
+        Ok((geometry, proxied))
     }
 
-    fn tree(&self, objects: &[u32], mut entries: Vec<Entry>) -> Result<Tree, ShapeError> {
+    fn tree<'a>(
+        &self,
+        objects: impl IntoIterator<Item = &'a u32>,
+        mut entries: Vec<Entry>,
+    ) -> Result<Tree, ShapeError> {
         for &object in objects {
             match &self.shapes[object as usize] {
                 Shape::Mesh(mesh) => entries.extend(

@@ -39,7 +39,7 @@ impl Geometry {
         let trees = self.groups.iter().chain([&self.world]).map(tree_bytes).sum::<usize>();
         let own = size_of_val(&*self.shapes) + size_of_val(&*self.instances);
         let mut census = Census { instances: self.instances.len(), bytes: trees + own, ..Census::default() };
-        for shape in &self.shapes {
+        for shape in &*self.shapes {
             match shape {
                 Shape::Mesh(mesh) => {
                     census.triangles += mesh.indices.len();

@@ -1,5 +1,7 @@
 //! All shapes of a scene, and the questions that transport asks of them.
 
+use std::sync::Arc;
+
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::{
@@ -102,12 +104,12 @@ impl Shape {
 pub struct Geometry {
     /// The instruction set, asked for once.
     pub(super) level: Level,
-    pub(super) shapes: Vec<Shape>,
+    pub(super) shapes: Arc<[Shape]>,
     /// By object: the group through whose instances alone it is seen.
-    pub(super) group: Vec<Option<u32>>,
+    pub(super) group: Arc<[Option<u32>]>,
     pub(super) world: Tree,
-    pub(super) groups: Vec<Tree>,
-    pub(super) instances: Vec<Instance>,
+    pub(super) groups: Arc<[Tree]>,
+    pub(super) instances: Arc<[Instance]>,
 }
 
 impl Geometry {
@@ -118,7 +120,20 @@ impl Geometry {
         groups: Vec<Tree>,
         instances: Vec<Instance>,
     ) -> Self {
-        Self { level: Level::new(), shapes, group, world, groups, instances }
+        let (shapes, group, groups) = (shapes.into(), group.into(), groups.into());
+        Self { level: Level::new(), shapes, group, world, groups, instances: instances.into() }
+    }
+
+    /// The same shapes, groups and instances, others of which are placed.
+    pub(super) fn with_world(&self, world: Tree) -> Self {
+        Self {
+            level: self.level,
+            shapes: Arc::clone(&self.shapes),
+            group: Arc::clone(&self.group),
+            world,
+            groups: Arc::clone(&self.groups),
+            instances: Arc::clone(&self.instances),
+        }
     }
 
     /// The nearest surface with `0 < t < t_max`.

@@ -118,6 +118,7 @@ impl World {
             interface,
             emission: Emission::None,
             body: None,
+            granular: None,
         });
     }
 
@@ -274,15 +275,13 @@ impl World {
 
     pub(crate) fn scene(self) -> Scene {
         let table = LightTable::new(self.lights);
-        Scene::new(
-            self.color,
-            self.camera,
-            self.builder.build().unwrap(),
-            self.objects,
-            self.materials,
-            self.media,
-            table,
-        )
+        let granular = |id: ObjectId| self.objects[id.0 as usize].granular;
+        let (geometry, proxied) = self.builder.build_granular(granular).unwrap();
+        let scene = Scene::new(self.color, self.camera, geometry, self.objects, self.materials, self.media, table);
+        match proxied {
+            Some(geometry) => scene.with_proxy(geometry),
+            None => scene,
+        }
     }
 
     /// The radiance along the one ray, from independent samples.

@@ -11,7 +11,7 @@ use anyhow::{bail, ensure};
 use statrs::distribution::{ContinuousCDF, Normal};
 use tyndall::{
     film::Film,
-    integrator::Counted,
+    integrator::VolPath,
     render::{self, Observer, Rendering, Settings, render},
     sampling::SamplerKind,
     scene::Scene,
@@ -157,7 +157,7 @@ fn image(options: &FurnaceOptions, scene: &Scene) -> Rendering {
         error: measurement.error,
         enough: AtomicBool::new(false),
     };
-    let rendering = render(scene, integrator(options.integrator, None, Counted::default()).as_ref(), &settings, &watch);
+    let rendering = render(scene, integrator(options.integrator, VolPath::default()).as_ref(), &settings, &watch);
     watch.progress.finish();
     rendering
 }

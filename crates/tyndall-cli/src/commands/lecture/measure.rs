@@ -11,7 +11,7 @@ use cpu_time::ProcessTime;
 use rayon::ThreadPool;
 use tyndall::{
     film::Film,
-    integrator::Counted,
+    integrator::VolPath,
     render::{self, Observer, Settings, render},
     sampling::SamplerKind,
 };
@@ -121,7 +121,7 @@ impl<'a> Bench<'a> {
     }
 
     fn render(&self, name: IntegratorName, settings: &Settings, stopwatch: &Stopwatch) -> Film {
-        let integrator = integrator(name, None, Counted::default());
+        let integrator = integrator(name, VolPath::default());
         let rendering = self.pool.install(|| render(&self.loaded.scene, integrator.as_ref(), settings, stopwatch));
         stopwatch.progress.finish();
         rendering.film

@@ -1,6 +1,6 @@
 //! A pack as a pbrt scene: one grain, placed once for each; a floor beneath, a lamp from the left and above, a dim sky.
 //! Or the grains alone, for a scene that includes them wherever it wants them.
-//! The centre of a container that is a mesh stays where its file has it.
+//! The centre of a container that is a mesh stays where its file has it. With a proxy, its body and medium come before the grains.
 
 use std::fmt::Write;
 
@@ -8,12 +8,13 @@ use glam::DVec3;
 use tyndall_grains::{
     form::Form,
     pack::{Grain, Pack},
+    proxy::{Body, Proxy},
 };
 
 use super::material::Material;
 
-/// The scene. Everything is placed in units of the container's size, so that every pack fills its picture.
-pub(super) fn text(pack: &Pack, material: Material) -> String {
+/// The scene around the grains. Everything is placed in units of the container's size, so that every pack fills its picture.
+pub(super) fn around(pack: &Pack, grains: &str) -> String {
     let (half, centre) = (pack.container.half(), pack.container.centre());
     let size = half.length();
     format!(
@@ -51,26 +52,63 @@ pub(super) fn text(pack: &Pack, material: Material) -> String {
         disk = 0.8 * size,
         floor = centre.z - half.z,
         wide = 40.0 * size,
-        grains = grains(pack, material, "grain"),
     )
 }
 
-/// The grains alone. The object has this name, and its medium another made of it.
-pub(super) fn grains(pack: &Pack, material: Material, name: &str) -> String {
+/// The grains alone. The object has this name, and media others made of it.
+pub(super) fn grains(pack: &Pack, material: Material, proxy: Option<&Proxy>, name: &str) -> String {
     let DVec3 { x, y, z } = pack.container.centre();
-    let mut text = format!("{}AttributeBegin\nTranslate {x} {y} {z}\n", object(&pack.form, material, name));
+    let mut text = object(&pack.form, material, proxy.is_some(), name);
+    let _ = writeln!(text, "AttributeBegin\nTranslate {x} {y} {z}");
+    if let Some(proxy) = proxy {
+        text += &stand_in(proxy, material, name);
+    }
     for grain in &pack.grains {
         place(&mut text, grain, name);
     }
     text + "AttributeEnd\n"
 }
 
-/// A grain of radius 1. It is the same wherever it is defined: what it stands in then counts for its instances only.
-fn object(form: &Form, material: Material, name: &str) -> String {
+/// The medium that stands for the grains.
+fn stand_in(proxy: &Proxy, material: Material, name: &str) -> String {
+    let coefficient = |name: &str, values: &[f64]| match material.absorption() {
+        Some(absorption) => format!(
+            "\"spectrum {name}\" [{}]",
+            spectrum(absorption.iter().map(|(nm, _)| *nm).zip(values.iter().copied()))
+        ),
+        None => format!("\"rgb {name}\" [{v:.6e} {v:.6e} {v:.6e}]", v = values[0]),
+    };
+    let phase: Vec<String> = proxy.phase.iter().map(|value| format!("{value:.5e}")).collect();
+    let mut text = format!(
+        "MakeNamedMedium \"among {name}\" \"string type\" \"homogeneous\" {} {}\n\"float phase\" [{}]\n\
+         AttributeBegin\nMaterial \"interface\"\nMediumInterface \"among {name}\" \"\"\n",
+        coefficient("sigma_a", &proxy.sigma_a),
+        coefficient("sigma_s", &proxy.sigma_s),
+        phase.join(" ")
+    );
+    text += &match &proxy.body {
+        Body::Ball(radius) => format!("Shape \"sphere\" \"float radius\" {radius}"),
+        Body::Mesh(points, triangles) => mesh(points, triangles),
+    };
+    text + " \"string granular\" \"proxy\"\nAttributeEnd\n"
+}
+
+fn spectrum(values: impl Iterator<Item = (f64, f64)>) -> String {
+    values.map(|(nm, sigma)| format!("{nm} {sigma:.6e}")).collect::<Vec<_>>().join(" ")
+}
+
+fn mesh(points: &[DVec3], triangles: &[[u32; 3]]) -> String {
+    let points: Vec<String> = points.iter().map(|p| format!("{:.7e} {:.7e} {:.7e}", p.x, p.y, p.z)).collect();
+    let indices: Vec<String> = triangles.iter().map(|[a, b, c]| format!("{a} {b} {c}")).collect();
+    format!("Shape \"trianglemesh\" \"point3 P\" [{}] \"integer indices\" [{}]", points.join(" "), indices.join(" "))
+}
+
+/// A grain of radius 1; one that a proxy stands for is marked. It is the same wherever it is defined: what it stands in then counts
+/// for its instances only.
+fn object(form: &Form, material: Material, marked: bool, name: &str) -> String {
     let mut text = String::new();
     if let Some(absorption) = material.absorption() {
-        let spectrum: Vec<String> = absorption.iter().map(|(nm, sigma_a)| format!("{nm} {sigma_a:.4e}")).collect();
-        let spectrum = spectrum.join(" ");
+        let spectrum = spectrum(absorption.into_iter());
         text = format!(
             "MakeNamedMedium \"inside {name}\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [{spectrum}] \"rgb sigma_s\" [0 0 0]\n"
         );
@@ -81,18 +119,13 @@ fn object(form: &Form, material: Material, name: &str) -> String {
         let _ = writeln!(text, "MediumInterface \"inside {name}\" \"\"");
     }
     match (form, form.triangles()) {
-        (_, Some((points, triangles))) => {
-            let points: Vec<String> = points.iter().map(|p| format!("{:.7e} {:.7e} {:.7e}", p.x, p.y, p.z)).collect();
-            let indices: Vec<String> = triangles.iter().map(|[a, b, c]| format!("{a} {b} {c}")).collect();
-            let (points, indices) = (points.join(" "), indices.join(" "));
-            let _ = writeln!(text, "Shape \"trianglemesh\" \"point3 P\" [{points}] \"integer indices\" [{indices}]");
-        }
+        (_, Some((points, triangles))) => text += &mesh(&points, triangles),
         (Form::Ellipsoid(axes), _) => {
-            let _ = writeln!(text, "Scale {} {} {}\nShape \"sphere\"", axes.x, axes.y, axes.z);
+            let _ = write!(text, "Scale {} {} {}\nShape \"sphere\"", axes.x, axes.y, axes.z);
         }
-        _ => text += "Shape \"sphere\"\n",
+        _ => text += "Shape \"sphere\"",
     }
-    text + "ObjectEnd\n"
+    text + if marked { " \"string granular\" \"grain\"\nObjectEnd\n" } else { "\nObjectEnd\n" }
 }
 
 fn place(text: &mut String, grain: &Grain, name: &str) {

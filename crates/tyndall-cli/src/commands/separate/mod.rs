@@ -13,6 +13,7 @@ use std::{
 use tyndall::{
     film::{Crop, Film},
     integrator::Integrator,
+    integrator::VolPath,
     light::Light,
     math::Vec3,
     render::{self, Observer, Settings, render},
@@ -172,7 +173,14 @@ impl Bench {
         let pixels = u64::from(crop.width()) * u64::from(crop.height());
         fit_into_memory(pixels, VALUES)?;
         Ok(Self {
-            integrator: integrator(IntegratorName::Volpath, said.max_depth.map(|depth| depth.value), said.counted),
+            integrator: integrator(
+                IntegratorName::Volpath,
+                VolPath {
+                    max_depth: said.max_depth.map(|depth| depth.value),
+                    counted: said.counted,
+                    ..VolPath::default()
+                },
+            ),
             settings: Settings { spp: options.spp, seed: options.seed, crop: Some(crop), ..Settings::default() },
             progress: Progress::new(pixels, None, true, options.quiet),
             total: pixels * u64::from(options.spp) * pictures,

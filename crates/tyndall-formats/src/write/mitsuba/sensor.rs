@@ -28,6 +28,9 @@ impl Pen<'_, '_> {
             // Mitsuba counts the segments of a path.
             element.integer("max_depth", i64::from(depth.value) + 1);
         }
+        if let Some(grains) = integrator.explicit_grains {
+            element.integer("explicit_grains", grains.value.into());
+        }
         if let Some(depth) = integrator.rr_depth {
             element.integer("rr_depth", depth.value.into());
         }

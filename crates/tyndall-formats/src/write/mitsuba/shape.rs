@@ -64,6 +64,9 @@ impl Pen<'_, '_> {
         if let Some(priority) = shape.priority {
             element.integer("priority", priority.value.into());
         }
+        if let Some(word) = shape.granular_word() {
+            element.string("granular", word);
+        }
         if let Some(interface) = shape.interface {
             self.interface(&mut element, &interface);
         }

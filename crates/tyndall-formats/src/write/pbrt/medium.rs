@@ -62,7 +62,7 @@ impl Pen<'_, '_> {
             PhaseDesc::Isotropic => {}
             PhaseDesc::HenyeyGreenstein { g } => entity.float_unless("g", g.value, 0.0),
             PhaseDesc::Rayleigh => self.lacks(medium.span, "Rayleigh's phase function"),
-            PhaseDesc::Tabulated { .. } => self.lacks(medium.span, "a phase function by a table"),
+            PhaseDesc::Tabulated { values } => entity.list("float", "phase", &values.value),
             PhaseDesc::Blend { .. } => self.lacks(medium.span, "a blend of phase functions"),
         }
         if let Some(light) = &medium.emission {

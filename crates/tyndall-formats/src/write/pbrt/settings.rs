@@ -44,6 +44,9 @@ impl Pen<'_, '_> {
                 .sheet
                 .line("# as long as light goes on; pbrt-v4 itself stops at \"integer maxdepth\" 5 unless told"),
         }
+        if let Some(grains) = integrator.explicit_grains {
+            entity.integer("explicitgrains", grains.value.into());
+        }
         self.entity(entity);
         if let Some(depth) = integrator.rr_depth {
             self.draft.differs(depth.span, "pbrt has no word for when Russian roulette begins: the noise may differ");

@@ -59,6 +59,9 @@ impl Pen<'_, '_> {
         if let Some(priority) = shape.priority {
             entity.integer("priority", priority.value.into());
         }
+        if let Some(word) = shape.granular_word() {
+            entity.string("granular", word);
+        }
         self.name(&mut entity, shape.name.as_deref());
         let name = quoted(self.material_name(material));
         if let Some(name) = shape.name.as_ref().filter(|_| !self.names_count()) {

@@ -93,7 +93,14 @@ impl Stage {
         let id = MaterialId(self.materials.len() as u32);
         self.materials.push(material);
         let emission = Emission::None;
-        self.objects.push(Object { name: String::new(), material: id, interface, emission, body: None });
+        self.objects.push(Object {
+            name: String::new(),
+            material: id,
+            interface,
+            emission,
+            body: None,
+            granular: None,
+        });
     }
 
     /// A medium that glows with a radiance.
