@@ -204,19 +204,19 @@ fn brightness(scene: &Scene, explicit_grains: Option<u32>, seed: u64) -> (f64, f
     (pixels.iter().map(|pixel| f64::from(pixel.mean()[0])).sum::<f64>() / n, variance.sqrt() / n)
 }
 
-/// Where grains fill 0.5 % of a ball they are a medium, of `n pi r^2` collisions per length with the phase function that was
-/// measured: from packs to packs the pictures differ by chance alone, with none, one and three explicit grains. (Centres are uniform
+/// Where grains fill 1 % of a ball they are a medium, of `n pi r^2` collisions per length with the phase function that was
+/// measured: from packs to packs the pictures differ by chance alone, with none and with two explicit grains. (Centres are uniform
 /// in the ball that the medium fills; of what grains are beside points there remain parts of the packing fraction.)
 #[test]
 fn few_grains_are_a_medium() {
-    const REACH: f64 = 100.0;
+    const REACH: f64 = 150.0;
     const PACKS: u64 = 8;
-    const COUNT: u64 = 5000;
-    let mut differences = [0; 3].map(|_| Vec::new());
+    const COUNT: u64 = 33_750;
+    let mut differences = [0; 2].map(|_| Vec::new());
     let (mut denser, mut total) = (Vec::new(), 0.0);
     let scattering = pack("sphere:4", "ball", "1", 1, 1).scattering(&substance(1.5, &[0.0]), 1).unwrap();
     for seed in 0..PACKS {
-        let grains = pack("sphere:101", "ball", "1", COUNT, seed);
+        let grains = pack("sphere:151", "ball", "1", COUNT, seed);
         let sigma = COUNT as f64 * PI / (4.0 / 3.0 * PI * REACH.powi(3));
         let medium = |sigma_s: f64| Homogeneous {
             sigma_a: Spectrum::constant(0.0),
@@ -227,10 +227,10 @@ fn few_grains_are_a_medium() {
         let scene = heap(&grains, REACH, medium(sigma), 0.0);
         let explicit = brightness(&scene, None, 1 + seed).0;
         total += explicit;
-        for (differences, grains) in differences.iter_mut().zip([0, 1, 3]) {
+        for (differences, grains) in differences.iter_mut().zip([0, 2]) {
             differences.push(brightness(&scene, Some(grains), 101 + seed).0 - explicit);
         }
-        // Of light that meets twice as many grains.
+        // A tenth more grains.
         let dense = heap(&grains, REACH, medium(1.1 * sigma), 0.0);
         denser.push(brightness(&dense, Some(0), 101 + seed).0 - explicit);
     }
@@ -240,10 +240,10 @@ fn few_grains_are_a_medium() {
         let variance = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (n - 1.0);
         (mean / (variance / n).sqrt(), (variance / n).sqrt() / (total / n))
     };
-    for (differences, grains) in differences.iter().zip([0, 1, 3]) {
+    for (differences, grains) in differences.iter().zip([0, 2]) {
         let (z, error) = z(differences);
         // Student's t of 7 degrees of freedom exceeds 6 once in 2000 times.
-        assert!(z.abs() < 6.0 && error < 0.004, "after {grains}: z = {z}, relative error {error}");
+        assert!(z.abs() < 6.0 && error < 0.01, "after {grains}: z = {z}, relative error {error}");
     }
     assert!(z(&denser).0.abs() > 6.0, "a tenth more grains is seen: {:?}", z(&denser));
 }

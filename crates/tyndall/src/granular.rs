@@ -105,10 +105,10 @@ impl Path {
     #[inline]
     pub(crate) fn leave_grain(&mut self, scene: &Scene, hit: &Interaction, crossed: bool) {
         let Some(proxied) = scene.proxied() else { return };
-        self.stage = match self.stage_after(scene, hit, self.ray.dir, crossed) {
-            Stage::Proxied => return self.go_on_in(proxied),
-            explicit => explicit,
-        };
+        match self.stage_after(scene, hit, self.ray.dir, crossed) {
+            Stage::Proxied => self.go_on_in(proxied),
+            explicit @ Stage::Explicit { .. } => self.stage = explicit,
+        }
     }
 
     /// The world of the proxy, if a ray from `vertex` towards `dir` goes on there and the path is not there yet.
