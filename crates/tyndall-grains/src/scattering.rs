@@ -126,7 +126,7 @@ fn grain(form: &Form) -> Result<Geometry, ShapeError> {
     let mut builder = GeometryBuilder::new();
     match (form, form.triangles()) {
         (_, Some((points, triangles))) => {
-            let positions = points.into_iter().map(|point| point.as_vec3()).collect();
+            let positions = points.into_iter().map(DVec3::as_vec3).collect();
             let mesh = Mesh { positions, indices: triangles.to_vec(), ..Mesh::default() };
             builder.add_mesh(mesh, &Transform::IDENTITY, false)?;
         }
