@@ -12,6 +12,7 @@
 //! stratified over a pixel the error is an upper bound.) Time is that of the processor, of either kind of path alone.
 
 use std::{
+    fmt::Write,
     sync::{Mutex, PoisonError},
     time::Duration,
 };
@@ -189,7 +190,8 @@ impl Difference {
             percent(2)
         );
         if *faults > 0 {
-            sentence += &format!("; {faults} of them found no radiance and do not count");
+            // Writing to a string cannot fail.
+            let _ = write!(sentence, "; {faults} of them found no radiance and do not count");
         }
         sentence
     }

@@ -126,7 +126,7 @@ fn grain(form: &Form) -> Result<Geometry, ShapeError> {
     let mut builder = GeometryBuilder::new();
     match (form, form.triangles()) {
         (_, Some((points, triangles))) => {
-            let positions = points.into_iter().map(|point| point.as_vec3()).collect();
+            let positions = points.into_iter().map(DVec3::as_vec3).collect();
             let mesh = Mesh { positions, indices: triangles.to_vec(), ..Mesh::default() };
             builder.add_mesh(mesh, &Transform::IDENTITY, false)?;
         }
@@ -185,54 +185,4 @@ fn strew(table: &mut [f64], cosine: f64, light: f64) {
     let share = place - below as f64;
     table[below] += (1.0 - share) * light;
     table[below + 1] += share * light;
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::pack::Recipe;
-
-    /// Light that wanders from ball to ball over gaps of mean length 1 and really goes through them, against the growth of its mean
-    /// square displacement by the formula of [`crate::proxy`]: between 20 and 40 meetings, where what is left of the first directions
-    /// is g²⁰ of it. 40,000 walks; the squares vary as much as their mean.
-    #[test]
-    fn light_wanders_among_grains_as_far_as_in_the_medium() {
-        const WALKS: u32 = 40_000;
-        let recipe = Recipe {
-            container: "sphere:9".parse().unwrap(),
-            form: Form::Ball,
-            radii: "1".parse().unwrap(),
-            count: 3,
-            seed: 1,
-        };
-        let pack = Pack::fill(&recipe, |_| true).unwrap();
-        let Meeting { mean_cosine: g, advance, square, .. } =
-            pack.scattering(&Substance { eta: 1.5, sigma_a: vec![0.0] }, 1).unwrap().meetings[0];
-        let expected = 2.0 * (1.0 + advance).powi(2) / (1.0 - g) + square;
-        let (ball, bsdf) = (grain(&Form::Ball).unwrap(), Bsdf::Dielectric(Dielectric::new(1.5)));
-        let growth: Vec<f64> = (0..WALKS)
-            .filter_map(|walk| {
-                let mut rng = Rng::for_sample((0, 0), walk, 9);
-                let (mut place, mut dir, mut half) = (DVec3::ZERO, Vec3::Z, 0.0);
-                for meeting in 0..40 {
-                    place += dir.as_dvec3() * -uniform(&mut rng).ln();
-                    let (a, b) = dir.any_orthonormal_pair();
-                    let (off, turn) = ((uniform(&mut rng).sqrt()) as f32, std::f32::consts::TAU * rng.next_1d());
-                    let entry = *entries(&ball, off * (turn.cos() * a + turn.sin() * b) - 2.0 * dir, dir).first()?;
-                    let way = way(&ball, &bsdf, entry, dir, &mut rng)?;
-                    place += (way.end - entry.p).as_dvec3();
-                    dir = way.dir;
-                    if meeting == 19 {
-                        half = place.length_squared();
-                    }
-                }
-                Some((place.length_squared() - half) / 20.0)
-            })
-            .collect();
-        let n = growth.len() as f64;
-        let mean = growth.iter().sum::<f64>() / n;
-        let error = (growth.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n / n).sqrt();
-        assert!(n > f64::from(WALKS) - 40.0, "{n} walks were not lost");
-        assert!((mean - expected).abs() < 4.0 * error && error < 0.012 * expected, "{mean} ± {error}, {expected}");
-    }
 }

@@ -4,16 +4,19 @@ use std::f64::consts::PI;
 
 use glam::DMat4;
 use tyndall::{
+    bsdf::{Bsdf, Dielectric},
     camera::{Camera, CameraModel, Perspective, View},
     film::Filter,
     granular::Granular,
     integrator::VolPath,
     light::{EnvironmentMap, Light, LightTable, Projection},
     material::{Index, Material, Roughness},
-    math::{Transform, Vec3},
+    math::{Ray, Transform, Vec3},
     medium::{Homogeneous, MediumId, MediumInterface},
+    path::Vertex,
     phase::Phase,
     render::{Settings, render},
+    sampling::Rng,
     scene::{Emission, MaterialId, Object, Scene},
     shape::{GeometryBuilder, ObjectId, Sphere},
     spectrum::{ColorMode, Spectrum},
@@ -116,6 +119,50 @@ fn a_proxy_fills_what_its_grains_do() {
     assert!(
         matches!(pack("sphere:10", "ball", "1", 9, 1).proxy(&substance(1.5, &[0.0]), None, 1).unwrap().body, Body::Ball(r) if r == 10.0)
     );
+}
+
+/// Light that wanders over exponential gaps from ball to ball, and really goes through them, against the growth of its mean square
+/// displacement in the medium, `2 / (sigma_t^2 (1 - g))` for each meeting: between 15 and 30 meetings, where `g^15` is left of the first
+/// directions. The pack is dense: what a ball carries light along is half of it.
+#[test]
+fn light_wanders_among_grains_as_far_as_in_their_medium() {
+    const WALKS: u32 = 30_000;
+    let grains = pack("sphere:6", "ball", "1", 60, 1);
+    let (gap, proxy) = (grains.free_path_by_formula(), grains.proxy(&substance(1.5, &[0.0]), None, 1).unwrap());
+    let expected = 2.0 / (proxy.sigma_s[0].powi(2) * (1.0 - proxy.mean_cosine));
+    let mut builder = GeometryBuilder::new();
+    builder.add_sphere(Sphere::new(Vec3::ZERO, 1.0), &Transform::IDENTITY, false).unwrap();
+    let (ball, bsdf) = (builder.build().unwrap(), Bsdf::Dielectric(Dielectric::new(1.5)));
+    let growth = |walk: u32| {
+        let mut rng = Rng::for_sample((0, 0), walk, 9);
+        let (mut place, mut dir, mut half) = (Vec3::ZERO, Vec3::Z, 0.0);
+        for meeting in 0..30 {
+            place += dir * (gap as f32 * -rng.next_positive().ln());
+            let (a, b) = dir.any_orthonormal_pair();
+            let (off, turn) = (rng.next_1d().sqrt(), std::f32::consts::TAU * rng.next_1d());
+            let mut ray = Ray::new(off * (turn.cos() * a + turn.sin() * b) - 2.0 * dir, dir);
+            let mut entry = None;
+            while let Some(hit) = ball.intersect(&ray, f32::INFINITY) {
+                let at = ball.interaction(&ray, &hit);
+                let start = *entry.get_or_insert(at.p);
+                ray = Vertex::surface(at, bsdf, ray.dir).sample([rng.next_1d(), rng.next_1d(), rng.next_1d()])?.ray;
+                if ray.dir.dot(at.ng) > 0.0 {
+                    place += at.p - start;
+                    break;
+                }
+            }
+            dir = ray.dir;
+            if meeting == 14 {
+                half = place.length_squared();
+            }
+        }
+        Some(f64::from(place.length_squared() - half) / 15.0)
+    };
+    let growth: Vec<f64> = (0..WALKS).filter_map(growth).collect();
+    let n = growth.len() as f64;
+    let mean = growth.iter().sum::<f64>() / n;
+    let error = (growth.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n / n).sqrt();
+    assert!((mean - expected).abs() < 4.0 * error && error < 0.015 * expected, "{mean} ± {error}, {expected}");
 }
 
 /// A half full mesh is refused.

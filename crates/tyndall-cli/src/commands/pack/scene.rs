@@ -86,10 +86,12 @@ fn stand_in(proxy: &Proxy, material: Material, name: &str) -> String {
         coefficient("sigma_s", &proxy.sigma_s),
         phase.join(" ")
     );
-    text += &match &proxy.body {
-        Body::Ball(radius) => format!("Shape \"sphere\" \"float radius\" {radius}"),
-        Body::Mesh(points, triangles) => mesh(points, triangles),
-    };
+    match &proxy.body {
+        Body::Ball(radius) => {
+            let _ = write!(text, "Shape \"sphere\" \"float radius\" {radius}");
+        }
+        Body::Mesh(points, triangles) => text += &mesh(points, triangles),
+    }
     text + " \"string granular\" \"proxy\"\nAttributeEnd\n"
 }
 
