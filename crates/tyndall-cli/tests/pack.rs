@@ -5,6 +5,8 @@ mod common;
 use std::process::Output;
 
 use common::Desk;
+use tyndall::{math::Vec3, shape::ObjectId, spectrum::ColorMode};
+use tyndall_formats::error::Unsupported;
 
 fn tyndall(desk: &Desk, arguments: &[&str]) -> Output {
     desk.program().args(arguments).output().unwrap()
@@ -42,8 +44,40 @@ fn grains_of_any_shape_settle_in_a_mesh_and_render() {
         assert!(told.contains("at rest") && told.contains("0 taken out"), "{told}");
         let scene = std::fs::read_to_string(desk.0.join("s.pbrt")).unwrap();
         assert!(scene.contains(shape) && scene.contains("Rotate") && scene.contains("sigma_a"), "{scene}");
+        assert_grains_are_within(&desk, "s.pbrt", Vec3::ZERO);
         let rendered = tyndall(&desk, &["render", "s.pbrt", "--spp", "1"]);
         assert!(rendered.status.success(), "{rendered:?}");
+    }
+}
+
+#[test]
+fn grains_alone_stand_wherever_a_scene_includes_them() {
+    let desk = Desk::new("pack-bare");
+    std::fs::write(desk.0.join("jar.obj"), CUBE).unwrap();
+    let salt = ["--count", "12", "--radius", "0.9", "--material", "green", "--bare", "-o", "my \"salt\".pbrt.gz"];
+    let packed = tyndall(&desk, &[&["pack", "jar.obj", "--settle"], &salt[..]].concat());
+    assert!(packed.status.success(), "{packed:?}");
+    std::fs::rename(desk.0.join("my \"salt\".pbrt.gz"), desk.0.join("salt.pbrt.gz")).unwrap();
+    let scene = r#"WorldBegin Translate 10 20 30 Include "salt.pbrt.gz" ObjectInstance "my__salt_""#;
+    std::fs::write(desk.0.join("twice.pbrt"), scene).unwrap();
+    let again = tyndall(&desk, &["info", "twice.pbrt"]);
+    assert!(String::from_utf8_lossy(&again.stdout).contains("13 instances"), "{again:?}");
+    std::fs::write(desk.0.join("once.pbrt"), r#"WorldBegin Translate 10 20 30 Include "salt.pbrt.gz""#).unwrap();
+    assert_grains_are_within(&desk, "once.pbrt", Vec3::new(10.0, 20.0, 30.0));
+}
+
+/// The scene's last object is placed twelve times, its centre nowhere nearer to a wall of the cube than it can be: by half an edge
+/// of a cube with the volume of a ball of radius 0.9, or by the short half axis of the ellipsoid.
+fn assert_grains_are_within(desk: &Desk, scene: &str, shift: Vec3) {
+    const NEAREST: f32 = 0.71;
+    let (min, max) = (Vec3::new(-4.0, -4.0, 0.0) + shift, Vec3::new(4.0, 4.0, 8.0) + shift);
+    let (desc, sources) = tyndall_formats::load(&desk.0.join(scene), &[], Unsupported::Refuse).unwrap();
+    let (scene, _) = tyndall_formats::build::build(&desc, sources, ColorMode::Rgb).unwrap();
+    let grain = ObjectId(scene.objects.len() as u32 - 1);
+    assert_eq!(scene.geometry.placed_bounds(grain).count(), 12);
+    for grain in scene.geometry.placed_bounds(grain) {
+        let centre = 0.5 * (grain.min + grain.max);
+        assert!((min + NEAREST).cmple(centre).all() && (centre + NEAREST).cmple(max).all(), "{centre}");
     }
 }
 

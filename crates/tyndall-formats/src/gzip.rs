@@ -1,12 +1,12 @@
 //! Files compressed by gzip: scene files and meshes whose name ends in `.gz`.
 
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
+use flate2::{Compression, read::MultiGzDecoder, write::GzEncoder};
 
 /// Whether a file is compressed, by the ending of its name.
-pub(crate) fn is_gzip(path: &Path) -> bool {
+pub fn is_gzip(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"))
 }
 
@@ -18,12 +18,14 @@ pub(crate) fn inflate(bytes: &[u8], limit: u64) -> Result<Vec<u8>, String> {
     if out.len() as u64 > limit { Err(format!("unfolds to more than {limit} bytes")) } else { Ok(out) }
 }
 
-#[cfg(test)]
-pub(crate) fn deflate(bytes: &[u8]) -> Vec<u8> {
-    use std::io::Write;
-    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
+/// Compressed content; the same for the same, whenever it is made.
+///
+/// # Errors
+/// If there is not enough memory.
+pub fn deflate(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(bytes)?;
+    encoder.finish()
 }
 
 #[cfg(test)]
@@ -33,7 +35,7 @@ mod tests {
     #[test]
     fn what_was_folded_unfolds_and_no_further_than_it_may() {
         let text = b"Shape ".repeat(1000);
-        let folded = deflate(&text);
+        let folded = deflate(&text).unwrap();
         assert!(folded.len() < 100);
         assert_eq!(inflate(&folded, 6000).unwrap(), text);
         assert_eq!(inflate(&folded, 5999).unwrap_err(), "unfolds to more than 5999 bytes");

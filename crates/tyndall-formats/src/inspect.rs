@@ -107,11 +107,12 @@ fn media_out_of_scale(desc: &SceneDesc, scene: &Scene, warnings: &mut Vec<SceneE
     }
 }
 
-/// The longest side of the largest object that has the medium inside [length]; objects of groups count in their own space.
+/// The longest side of the largest object that has the medium inside, as it stands in the world [length].
 fn largest_body(scene: &Scene, medium: tyndall::medium::MediumId) -> f32 {
     let holds = |o: &tyndall::scene::Object| o.interface.is_some_and(|i| i.inside == Some(medium));
     let objects = (0..).zip(&scene.objects).filter(|(_, object)| holds(object));
-    objects.map(|(i, _)| scene.geometry.object_bounds(ObjectId(i)).extent().max_element()).fold(0.0, f32::max)
+    let placed = objects.flat_map(|(i, _)| scene.geometry.placed_bounds(ObjectId(i)));
+    placed.map(|bounds| bounds.extent().max_element()).fold(0.0, f32::max)
 }
 
 /// Lights without size, where a medium can be reached through polished boundaries only: no path and no light sample finds
@@ -254,6 +255,23 @@ mod tests {
             milk(1000)
         );
         assert_eq!(milk(1), "");
+    }
+
+    /// A ball of diameter 2 that is placed a thousandth as large with σ_t = 1e4 is 20 mean free paths across; placed also as it
+    /// is, 2e4; and one that is never placed is not there.
+    #[test]
+    fn an_instanced_body_counts_as_large_as_it_is_placed() {
+        let placed = |instances: &str| {
+            warned(&format!(
+                r#"MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_s" [10000 10000 10000]
+                   ObjectBegin "grain" {BALL} ObjectEnd {instances}"#
+            ))
+        };
+        let small = r#"AttributeBegin Scale 1e-3 1e-3 1e-3 ObjectInstance "grain" AttributeEnd"#;
+        assert_eq!(placed(small), "");
+        let both = placed(&format!(r#"{small} ObjectInstance "grain""#));
+        assert!(both.contains("is 2.0e4 mean free paths across"), "{both}");
+        assert!(!placed("").contains("mean free paths"), "{}", placed(""));
     }
 
     #[test]

@@ -11,7 +11,7 @@ pub mod build;
 pub mod desc;
 pub mod error;
 pub mod film;
-mod gzip;
+pub mod gzip;
 pub mod image;
 pub mod inspect;
 pub mod measured;
@@ -28,7 +28,7 @@ use desc::SceneDesc;
 use error::{Diagnostics, SceneError, Unsupported};
 use source::SourceMap;
 
-/// Reads a scene, in the language that the file's ending names. `overrides` are parameters of the scene (`-D name=value`).
+/// Reads a scene, in the language that the file's ending names (before `.gz`, if it is compressed). `overrides` are parameters of the scene (`-D name=value`).
 ///
 /// # Errors
 /// Everything that is wrong with the scene; and what is not supported yet, unless that is only to be warned of
@@ -38,7 +38,8 @@ pub fn load(
     overrides: &[(String, String)],
     unsupported: Unsupported,
 ) -> Result<(SceneDesc, SourceMap), Diagnostics> {
-    match path.extension().and_then(|e| e.to_str()) {
+    let name = path.file_stem().filter(|_| gzip::is_gzip(path)).map_or(path, Path::new);
+    match name.extension().and_then(|e| e.to_str()) {
         Some("pbrt") => pbrt::load(path, overrides, unsupported),
         Some("xml") => mitsuba::load(path, overrides, unsupported),
         _ => {

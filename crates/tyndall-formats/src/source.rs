@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn a_compressed_file_is_read_as_its_text() {
         let path = std::env::temp_dir().join(format!("tyndall-gzip-{}.pbrt.gz", std::process::id()));
-        std::fs::write(&path, gzip::deflate(b"WorldBegin")).unwrap();
+        std::fs::write(&path, gzip::deflate(b"WorldBegin").unwrap()).unwrap();
         let mut map = SourceMap::default();
         let read = map.read(&path, None);
         std::fs::write(&path, b"WorldBegin").unwrap();

@@ -261,6 +261,8 @@ fn what_is_wrong_with_layers_is_said_with_the_place() {
         ("CV*L", "write NAME=CV*L"),
         ("a=CL,a=CB", "two layers"),
         ("orders:999", "0 to 64"),
+        ("depths:-1", "depths:N has N from 0 to 64"),
+        ("depth0_volume", "not divided"),
         ("emission_volume", "not divided"),
         ("stderr=CL", "cannot be called"),
         ("a b=CL", "cannot be called"),
@@ -271,8 +273,11 @@ fn what_is_wrong_with_layers_is_said_with_the_place() {
     ] {
         assert!(list(text).contains(says), "{text}: {}", list(text));
     }
-    let named = tyndall::lpe::named::list("a=CV{1,2}L'x,y', orders:1").unwrap();
-    assert_eq!(named.iter().map(|layer| &*layer.name).collect::<Vec<_>>(), ["a", "order0", "order1", "beyond1"]);
+    let named = tyndall::lpe::named::list("a=CV{1,2}L'x,y', orders:1, depths:1, deeper1_volume").unwrap();
+    let called: Vec<_> = named.iter().map(|layer| &*layer.name).collect();
+    assert_eq!(called, ["a", "order0", "order1", "beyond1", "depth0", "depth1", "deeper1", "deeper1_volume"]);
+    let texts: Vec<_> = named[4..].iter().map(|layer| &*layer.text).collect();
+    assert_eq!(texts, ["C[LOB]", "C.{1}[LOB]", "C.{2,}[LOB]", "CV.{1,}[LOB]"]);
 }
 
 /// Layers crossed with names: of the layer's paths those that have an event of that name. One of them (collisions in milk of

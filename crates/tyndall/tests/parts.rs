@@ -19,10 +19,11 @@ use tyndall::{
     spectrum::{ColorMode, Spectrum},
 };
 
-const PARTITIONS: [&str; 4] = [
+const PARTITIONS: [&str; 5] = [
     "emission,direct,indirect",
     "unscattered,single,multiple",
     "orders:3",
+    "depths:3",
     "emission,direct_surface,direct_volume,indirect_surface,indirect_volume",
 ];
 

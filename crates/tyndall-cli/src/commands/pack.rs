@@ -4,11 +4,18 @@ mod material;
 mod scene;
 mod shapes;
 
-use std::{path::PathBuf, process::ExitCode, time::Instant};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Instant,
+};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use tyndall_formats::film::save;
+use tyndall_formats::{
+    film::save,
+    gzip::{deflate, is_gzip},
+};
 use tyndall_grains::{
     pack::{Pack, Recipe},
     radii::Radii,
@@ -29,6 +36,7 @@ Examples:
   tyndall pack box:20:20:10 --radius lognormal:0.4:0.3 --count 5000 --material salt -o salt.pbrt
   tyndall pack cylinder:10:20 --radius 1 --count 5000 --settle -o poured.pbrt
   tyndall pack jar.ply --grain ellipsoid:1:1:2 --radius 0.5 --settle --material green -o jar.pbrt
+  tyndall pack heap.obj --grain cube.obj --radius 0.3 --settle --material salt --bare -o salt.pbrt.gz
 
 A radius is that of the ball with the volume of the grain. Ctrl-C ends the packing and keeps what has been packed.
 Lengths are millimetres.")]
@@ -56,9 +64,12 @@ pub(crate) struct PackOptions {
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The pbrt scene to write
+    /// The pbrt scene to write, compressed if it ends in .gz
     #[arg(short, long)]
     out: Option<PathBuf>,
+    /// Write the grains only, for a scene of yours that includes the file: an object with the file's name, and its instances
+    #[arg(long, requires = "out")]
+    bare: bool,
 }
 
 pub(crate) fn run(options: &PackOptions) -> anyhow::Result<ExitCode> {
@@ -94,10 +105,28 @@ pub(crate) fn run(options: &PackOptions) -> anyhow::Result<ExitCode> {
         say(&format!("                   {:.5} mm mean free path", bulk.free_path))?;
     }
     if let Some(path) = &options.out {
-        save::replace(path, scene::text(&pack, options.material).as_bytes())?;
+        write(path, &pack, options)?;
         say(&format!("scene              {}", path.display()))?;
     }
     Ok(if interrupt::requested() { ExitCode::from(interrupt::EXIT) } else { ExitCode::SUCCESS })
+}
+
+/// The scene, or its part.
+fn write(path: &Path, pack: &Pack, options: &PackOptions) -> anyhow::Result<()> {
+    let text = if options.bare {
+        scene::grains(pack, options.material, &name(path))
+    } else {
+        scene::text(pack, options.material)
+    };
+    let bytes = if is_gzip(path) { deflate(text.as_bytes())? } else { text.into_bytes() };
+    Ok(save::replace(path, &bytes)?)
+}
+
+/// What a file is called before its first dot, in letters that need no quotes.
+fn name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.split('.').next().unwrap_or_default();
+    stem.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect()
 }
 
 /// The pack, and how much at rest it is if it has settled.

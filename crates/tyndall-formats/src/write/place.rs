@@ -68,11 +68,12 @@ impl Look {
     }
 }
 
-/// A point that lies in this direction, in single precision and with few digits.
+/// A point that lies in this direction, in single precision and with few digits. It depends on nothing but the direction in
+/// single precision: whoever reads it and writes it again writes the same.
 pub(super) fn target(from: DVec3, axis: DVec3) -> Option<DVec3> {
-    let axis = axis.try_normalize()?;
-    let is_right = |to: DVec3| (to - from).try_normalize().is_some_and(|read| read.as_vec3() == axis.as_vec3());
-    targets(from, axis).find(|to| is_right(*to))
+    let axis = axis.try_normalize()?.as_vec3();
+    let is_right = |to: DVec3| (to - from).try_normalize().is_some_and(|read| read.as_vec3() == axis);
+    targets(from, axis.as_dvec3()).find(|to| is_right(*to))
 }
 
 /// Points along a direction: those in a plane between the axes, rounded, are often what a person wrote.
@@ -83,8 +84,10 @@ fn targets(from: DVec3, dir: DVec3) -> impl Iterator<Item = DVec3> {
     let distances: Vec<_> = distances.filter(|d| (1e-12..1e12).contains(d)).collect();
     let exact = distances.clone().into_iter().map(move |d| from + d * dir);
     let with = move |digits: f64, d: f64| rounded(from + d * dir, digits, d.max(from.length()));
-    let few = distances.clone().into_iter().map(move |d| with(9.0, d));
-    few.chain(distances.into_iter().map(move |d| with(13.0, d))).chain(exact)
+    let few = [6.0, 9.0, 13.0]
+        .into_iter()
+        .flat_map(move |digits| distances.clone().into_iter().map(move |d| with(digits, d)));
+    few.chain(exact)
 }
 
 /// To some digits of a length.
@@ -118,6 +121,21 @@ pub(super) fn inverse_of(m: DMat4) -> DMat4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of a spot at (-230, 150, 150) that shines at (-13, 3, 19) and of others like it.
+    #[test]
+    fn a_target_that_is_read_and_written_again_stays_where_it_is() {
+        let coordinate = |i: u32| (f64::from(i) * 12.9898).sin() * 43758.5453 % 300.0;
+        let place = |i: u32| DVec3::new(coordinate(3 * i), coordinate(3 * i + 1), coordinate(3 * i + 2)).round();
+        let known = (DVec3::new(-230.0, 150.0, 150.0), DVec3::new(-13.0, 3.0, 19.0));
+        for (from, to) in (0..200).map(|i| (place(2 * i), place(2 * i + 1))).chain([known]) {
+            let once = target(from, to - from).unwrap();
+            assert_eq!((once - from).normalize().as_vec3(), (to - from).normalize().as_vec3());
+            assert_eq!(target(from, once - from), Some(once), "{from} {to}");
+        }
+        let table = DVec3::new(4.0, 0.0, -7.0);
+        assert_eq!(target(known.0, table - known.0), Some(table));
+    }
 
     #[test]
     fn scales_and_translations_are_words_and_all_else_is_numbers() {

@@ -11,15 +11,18 @@
 //! | `multiple` | by media more than once | `C[RT]*V[RT]*V.*[LOB]` |
 //! | `order3` | by media three times | `C[RT]*(V[RT]*){3}[LOB]` |
 //! | `beyond8` | by media more than eight times | `C[RT]*(V[RT]*){9,}[LOB]` |
+//! | `depth3` | three times, by surfaces and media | `C.{3}[LOB]` |
+//! | `deeper8` | more than eight times | `C.{9,}[LOB]` |
 //! | `surface`, `volume` | in any way; what is seen there is a surface, a medium | `C[RT].*[LOB]`, `CV.*[LOB]` |
 //!
 //! With `_surface` or `_volume` behind it, a layer is that part of it in which a surface or a medium was the first to scatter,
-//! seen from the camera: `direct_volume` is `CV[LOB]`. `orders:8` stands for `order0` to `order8` and `beyond8`.
+//! seen from the camera: `direct_volume` is `CV[LOB]`. `orders:8` stands for `order0` to `order8` and `beyond8`, `depths:8` for
+//! `depth0` to `depth8` and `deeper8`: the orders of scattering where there are no media, as in hair and grains.
 //!
 //! `single@'milk'` is the part of `single` whose paths meet what is called so, `direct@L'lamp'` the part of `direct` that comes from
 //! that light: `C.[LOB] & .*L'lamp'.*`, in a layer `direct_lamp`. So for every name, and for `orders:8@V'milk'`.
 //!
-//! `emission`, `direct` and `indirect` add up to all light; so do `unscattered`, `single` and `multiple`, and `orders:N`.
+//! `emission`, `direct` and `indirect` add up to all light; so do `unscattered`, `single` and `multiple`, and `orders:N`, and `depths:N`.
 
 use super::{PathLayer, parse};
 
@@ -54,11 +57,72 @@ const NAMED: [Named; 9] = [
     undivided("volume", "CV.*[LOB]", "in any way; what is seen there is a medium"),
 ];
 /// Further forms, for messages.
-const FORMS: [&str; 5] = ["order3", "beyond8", "orders:8", "direct@'name'", "NAME=EXPRESSION"];
-/// Orders that `orders:N` tells apart.
+const FORMS: [&str; 8] =
+    ["order3", "beyond8", "orders:8", "depth3", "deeper8", "depths:8", "direct@'name'", "NAME=EXPRESSION"];
+/// Orders that `orders:N` and `depths:N` tell apart.
 const MOST_ORDERS: u32 = 64;
 /// Names that the file has for other things.
 const TAKEN: [&str; 4] = ["stderr", "R", "G", "B"];
+
+/// What counts as a scattering.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    /// Collisions in media.
+    Media,
+    /// These, and surfaces with a material.
+    All,
+}
+
+/// Light that was scattered so often, which `order3`, `beyond8`, `depth3` and `deeper8` name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Count {
+    /// What is counted.
+    pub by: By,
+    /// How often.
+    pub n: u32,
+    /// Or rather more often than that.
+    pub more: bool,
+}
+
+impl By {
+    /// How layers are called that are scattered a number of times, more often, and a list of them.
+    const fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Media => ["order", "beyond", "orders:"],
+            Self::All => ["depth", "deeper", "depths:"],
+        }
+    }
+}
+
+impl Count {
+    /// What a name says of it, if it is such a name.
+    pub fn named(name: &str) -> Option<Self> {
+        [By::Media, By::All].into_iter().find_map(|by| {
+            let [exactly, more, _] = by.words();
+            let (digits, more) =
+                name.strip_prefix(more).map(|n| (n, true)).or(name.strip_prefix(exactly).map(|n| (n, false)))?;
+            let n = digits.parse().ok().filter(|n: &u32| *n <= MOST_ORDERS && digits == n.to_string())?;
+            Some(Self { by, n, more })
+        })
+    }
+
+    /// Its expression, or that of its part in which a surface (0) or a medium (1) was first; empty if it has no such part.
+    fn expression(self, part: Option<usize>) -> String {
+        let (n, up) = if self.more { (self.n + 1, ",") } else { (self.n, "") };
+        let Some(less) = n.checked_sub(1) else {
+            let whole = if self.by == By::Media { "C[RT]*[LOB]" } else { "C[LOB]" };
+            return if part.is_none() { whole.into() } else { String::new() };
+        };
+        match (self.by, part) {
+            (By::Media, None) => format!("C[RT]*(V[RT]*){{{n}{up}}}[LOB]"),
+            (By::Media, Some(0)) => format!("C[RT]+(V[RT]*){{{n}{up}}}[LOB]"),
+            (By::Media, Some(_)) => format!("CV[RT]*(V[RT]*){{{less}{up}}}[LOB]"),
+            (By::All, None) => format!("C.{{{n}{up}}}[LOB]"),
+            (By::All, Some(0)) => format!("C[RT].{{{less}{up}}}[LOB]"),
+            (By::All, Some(_)) => format!("CV.{{{less}{up}}}[LOB]"),
+        }
+    }
+}
 
 /// What is wrong with a list of layers.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -72,6 +136,9 @@ pub fn table() -> impl Iterator<Item = (&'static str, &'static str, &'static str
         ("order3", "C[RT]*(V[RT]*){3}[LOB]", "by media three times"),
         ("beyond8", "C[RT]*(V[RT]*){9,}[LOB]", "by media more than eight times"),
         ("orders:8", "", "all of order0 to order8, and beyond8"),
+        ("depth3", "C.{3}[LOB]", "three times, by surfaces and media"),
+        ("deeper8", "C.{9,}[LOB]", "more than eight times, by surfaces and media"),
+        ("depths:8", "", "all of depth0 to depth8, and deeper8"),
         ("direct_surface", "C[RT][LOB]", "as direct, first by a surface, seen from the camera"),
         ("direct_volume", "CV[LOB]", "as direct, first by a medium; so for indirect, single, multiple, order3"),
         ("single@'milk'", "C[RT]*V[RT]*[LOB] & .*'milk'.*", "as single, where paths meet what is called so"),
@@ -141,12 +208,13 @@ fn item(item: &str) -> Result<Vec<PathLayer>, ListError> {
     if let Some((base, event)) = item.split_once('@') {
         return self::item(base.trim())?.iter().map(|layer| crossed(layer, event.trim())).collect();
     }
-    if let Some(most) = item.strip_prefix("orders:") {
-        let most = most.parse().ok().filter(|n| *n <= MOST_ORDERS).ok_or_else(|| {
-            ListError(format!("`{item}` names no orders: orders:N has N from 0 to {MOST_ORDERS}, as in orders:8"))
+    for [exactly, more, list] in [By::Media.words(), By::All.words()] {
+        let Some(most) = item.strip_prefix(list) else { continue };
+        let most: u32 = most.parse().ok().filter(|n| *n <= MOST_ORDERS).ok_or_else(|| {
+            ListError(format!("`{item}` names no layers: {list}N has N from 0 to {MOST_ORDERS}, as in {list}8"))
         })?;
-        let last = format!("beyond{most}");
-        return (0..=most).map(|n| format!("order{n}")).chain([last]).map(|name| named(&name)).collect();
+        let last = format!("{more}{most}");
+        return (0..=most).map(|n| format!("{exactly}{n}")).chain([last]).map(|name| named(&name)).collect();
     }
     Ok(vec![named(item)?])
 }
@@ -183,27 +251,13 @@ pub fn named(name: &str) -> Result<PathLayer, ListError> {
             None => (*whole).to_owned(),
             Some(part) => parts.map_or(String::new(), |parts| parts[part].to_owned()),
         }),
-        None => order(base, part),
+        None => Count::named(base).map(|count| count.expression(part)),
     };
     match text.as_deref() {
         Some("") => Err(ListError(format!("`{base}` is not divided by what scatters first: there is no `{name}`"))),
         Some(text) => layer(name, text),
         None => Err(unknown(name)),
     }
-}
-
-/// `order3`, `beyond8`.
-fn order(base: &str, part: Option<usize>) -> Option<String> {
-    let (digits, up) = base.strip_prefix("beyond").map(|n| (n, ",")).or(base.strip_prefix("order").map(|n| (n, "")))?;
-    let n = digits.parse::<u32>().ok().filter(|n| *n <= MOST_ORDERS && digits == n.to_string())?;
-    let n = if up.is_empty() { n } else { n + 1 };
-    Some(match (n, part) {
-        (0, None) => "C[RT]*[LOB]".into(),
-        (0, Some(_)) => String::new(),
-        (_, None) => format!("C[RT]*(V[RT]*){{{n}{up}}}[LOB]"),
-        (_, Some(0)) => format!("C[RT]+(V[RT]*){{{n}{up}}}[LOB]"),
-        (_, Some(_)) => format!("CV[RT]*(V[RT]*){{{}{up}}}[LOB]", n - 1),
-    })
 }
 
 fn unknown(name: &str) -> ListError {

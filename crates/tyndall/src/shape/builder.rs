@@ -234,9 +234,13 @@ impl GeometryBuilder {
         let groups = self.groups.iter().map(|group| self.tree(group, Vec::new())).collect::<Result<Vec<_>, _>>()?;
         let instances = (0..self.instances.len()).flat_map(|i| self.instance_entries(i as u32, &groups)).collect();
         let world = self.tree(&self.world, instances)?;
-        let mut grouped = vec![false; self.shapes.len()];
-        self.groups.iter().flatten().for_each(|object| grouped[*object as usize] = true);
-        Ok(Geometry::new(self.shapes, grouped, world, groups, self.instances))
+        let mut group = vec![None; self.shapes.len()];
+        for (id, objects) in (0..).zip(&self.groups) {
+            for object in objects {
+                group[*object as usize] = Some(id);
+            }
+        }
+        Ok(Geometry::new(self.shapes, group, world, groups, self.instances))
     }
 
     fn tree(&self, objects: &[u32], mut entries: Vec<Entry>) -> Result<Tree, ShapeError> {

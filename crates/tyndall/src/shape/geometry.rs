@@ -103,8 +103,8 @@ pub struct Geometry {
     /// The instruction set, asked for once.
     pub(super) level: Level,
     pub(super) shapes: Vec<Shape>,
-    /// By object: whether it is seen through instances only.
-    pub(super) grouped: Vec<bool>,
+    /// By object: the group through whose instances alone it is seen.
+    pub(super) group: Vec<Option<u32>>,
     pub(super) world: Tree,
     pub(super) groups: Vec<Tree>,
     pub(super) instances: Vec<Instance>,
@@ -113,12 +113,12 @@ pub struct Geometry {
 impl Geometry {
     pub(super) fn new(
         shapes: Vec<Shape>,
-        grouped: Vec<bool>,
+        group: Vec<Option<u32>>,
         world: Tree,
         groups: Vec<Tree>,
         instances: Vec<Instance>,
     ) -> Self {
-        Self { level: Level::new(), shapes, grouped, world, groups, instances }
+        Self { level: Level::new(), shapes, group, world, groups, instances }
     }
 
     /// The nearest surface with `0 < t < t_max`.
@@ -223,12 +223,20 @@ impl Geometry {
 
     /// Whether an object is part of a group, and is seen through instances only.
     pub fn is_in_group(&self, object: ObjectId) -> bool {
-        self.grouped[object.0 as usize]
+        self.group[object.0 as usize].is_some()
     }
 
     /// A box around one object, in world space unless it is part of a group.
     pub fn object_bounds(&self, object: ObjectId) -> Bounds {
         self.shape(object).bounds()
+    }
+
+    /// Boxes around one object in the world, one for each place where it stands.
+    pub fn placed_bounds(&self, object: ObjectId) -> impl Iterator<Item = Bounds> {
+        let (bounds, group) = (self.object_bounds(object), self.group[object.0 as usize]);
+        let in_world = group.is_none().then_some(bounds);
+        let instances = self.instances.iter().filter(move |instance| Some(instance.group) == group);
+        in_world.into_iter().chain(instances.map(move |instance| instance.placement.bounds(&bounds)))
     }
 
     /// A shape, in world space unless it is part of a group.

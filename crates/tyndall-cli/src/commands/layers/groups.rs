@@ -5,7 +5,10 @@
 //! first group of its kind that has room for it: light that was in a group before is not there twice. What a group lacks of
 //! the image is a layer of its own, the rest.
 
-use tyndall::{lpe::named, spectrum::srgb};
+use tyndall::{
+    lpe::named::{self, By, Count},
+    spectrum::srgb,
+};
 use tyndall_formats::film::Image;
 
 /// What the layers of a group tell apart.
@@ -17,6 +20,8 @@ pub(crate) enum Kind {
     Media,
     /// The same, order by order.
     Orders,
+    /// How often it was scattered at all, time by time.
+    Depths,
     /// What it was that scattered first.
     Seen,
     /// What the user's expressions select.
@@ -53,13 +58,16 @@ const NO_LIGHT: [&str; 4] = ["stderr", "albedo", "variance", "relativevariance"]
 
 impl Kind {
     fn of(name: &str) -> Self {
-        let base = name.strip_suffix("_surface").or(name.strip_suffix("_volume")).unwrap_or(name);
+        let base = base(name);
         match base {
             "emission" | "direct" | "indirect" => Self::Ways,
             "unscattered" | "single" | "multiple" => Self::Media,
             "surface" | "volume" => Self::Seen,
-            _ if named::named(base).is_ok() && base != "all" => Self::Orders,
-            _ => Self::Own,
+            _ => match Count::named(base) {
+                Some(Count { by: By::Media, .. }) => Self::Orders,
+                Some(Count { by: By::All, .. }) => Self::Depths,
+                None => Self::Own,
+            },
         }
     }
 
@@ -69,6 +77,7 @@ impl Kind {
             Self::Ways => "direct and indirect",
             Self::Media => "single and multiple scattering in media",
             Self::Orders => "orders of scattering in media",
+            Self::Depths => "orders of scattering by anything",
             Self::Seen => "what is seen first",
             Self::Own => "layers of the scene's own",
         }
@@ -80,6 +89,7 @@ impl Kind {
             Self::Ways => "ways",
             Self::Media => "media",
             Self::Orders => "orders",
+            Self::Depths => "depths",
             Self::Seen => "seen",
             Self::Own => "own",
         }
@@ -179,28 +189,32 @@ fn ordinal(v: f32) -> i32 {
 /// Less scattered light comes first: order0, order1, …; a film's channels come in any order.
 fn rank(name: &str) -> (u32, String) {
     const FIRST: [&str; 6] = ["emission", "direct", "indirect", "unscattered", "single", "multiple"];
-    let order = name.strip_prefix("order").or(name.strip_prefix("beyond"));
-    let digits = order.map(|rest| rest.chars().take_while(char::is_ascii_digit).collect::<String>());
-    let n = digits.and_then(|digits| digits.parse::<u32>().ok());
-    let place = match n {
-        Some(n) => 2 * n + u32::from(name.starts_with("beyond")),
+    let place = match Count::named(base(name)) {
+        Some(Count { n, more, .. }) => 2 * n + u32::from(more),
         None => FIRST.iter().position(|first| name.starts_with(first)).unwrap_or(FIRST.len()) as u32,
     };
     (place, name.to_owned())
 }
 
+/// A name without what was first to scatter.
+fn base(name: &str) -> &str {
+    name.strip_suffix("_surface").or(name.strip_suffix("_volume")).unwrap_or(name)
+}
+
 /// How light of a layer with a name was scattered.
 fn meaning(name: &str) -> String {
-    let digits = |text: &str| text.parse::<u32>().ok();
     if let Some((_, _, meaning)) = named::table().find(|(known, ..)| *known == name) {
         return format!("scattered {meaning}").replace("scattered in any way; ", "");
     }
-    match (name.strip_prefix("order").and_then(digits), name.strip_prefix("beyond").and_then(digits)) {
-        (Some(0), _) => "scattered by no medium".into(),
-        (Some(1), _) => "scattered by media once".into(),
-        (Some(n), _) => format!("scattered by media {n} times"),
-        (_, Some(n)) => format!("scattered by media more than {n} times"),
-        _ => match (name.strip_suffix("_surface"), name.strip_suffix("_volume")) {
+    match Count::named(name) {
+        Some(Count { by: By::Media, n: 0, more: false }) => "scattered by no medium".into(),
+        Some(Count { by: By::All, n: 0, more: false }) => "not scattered".into(),
+        Some(Count { by, n, more }) => {
+            let by = if by == By::Media { " by media" } else { "" };
+            let times = if n == 1 { "once".into() } else { format!("{n} times") };
+            format!("scattered{by} {}{times}", if more { "more than " } else { "" })
+        }
+        None => match (name.strip_suffix("_surface"), name.strip_suffix("_volume")) {
             (Some(base), _) if !meaning(base).is_empty() => format!("{}, first by a surface", meaning(base)),
             (_, Some(base)) if !meaning(base).is_empty() => format!("{}, first by a medium", meaning(base)),
             _ => String::new(),
@@ -237,6 +251,8 @@ mod tests {
                 ("beyond1", [0.75, 0.0]),
                 ("direct", [0.25, 3.0]),
                 ("indirect", [0.75, 1.0]),
+                ("deeper0", [0.5, 4.0]),
+                ("depth0", [0.5, 0.0]),
                 ("order0", [0.0, 3.0]),
                 ("order1", [0.25, 1.0]),
                 ("single", [0.25, 1.0]),
@@ -244,9 +260,10 @@ mod tests {
             ],
         );
         let found = groups(&all);
-        let expected: [&[&str]; 3] = [&["direct", "indirect"], &["single", "rest"], &["order0", "order1", "beyond1"]];
+        let expected: [&[&str]; 4] =
+            [&["direct", "indirect"], &["single", "rest"], &["order0", "order1", "beyond1"], &["depth0", "deeper0"]];
         assert_eq!(found.iter().map(names).collect::<Vec<_>>(), expected);
-        assert_eq!(found.iter().map(|group| group.apart).collect::<Vec<_>>(), [Some(0), None, Some(0)]);
+        assert_eq!(found.iter().map(|group| group.apart).collect::<Vec<_>>(), [Some(0), None, Some(0), Some(0)]);
         assert_eq!(found[1].layers[1].values, [[0.75; 3], [3.0; 3]]);
         assert!((found[0].layers[0].share - 0.65).abs() < 1e-6);
     }
@@ -270,6 +287,8 @@ mod tests {
         assert_eq!(meaning("single"), "scattered by media once");
         assert_eq!(meaning("surface"), "what is seen there is a surface");
         assert_eq!(meaning("beyond3_volume"), "scattered by media more than 3 times, first by a medium");
+        assert_eq!(meaning("deeper4"), "scattered more than 4 times");
+        assert_eq!(meaning("depth1_surface"), "scattered once, first by a surface");
         assert_eq!(meaning("caustic"), "");
     }
 }

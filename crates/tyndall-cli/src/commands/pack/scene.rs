@@ -1,8 +1,10 @@
 //! A pack as a pbrt scene: one grain, placed once for each; a floor beneath, a lamp from the left and above, a dim sky.
+//! Or the grains alone, for a scene that includes them wherever it wants them.
 //! The centre of a container that is a mesh stays where its file has it.
 
 use std::fmt::Write;
 
+use glam::DVec3;
 use tyndall_grains::{
     form::Form,
     pack::{Grain, Pack},
@@ -14,7 +16,7 @@ use super::material::Material;
 pub(super) fn text(pack: &Pack, material: Material) -> String {
     let (half, centre) = (pack.container.half(), pack.container.centre());
     let size = half.length();
-    let mut text = format!(
+    format!(
         "# {} grains, written by `tyndall pack`. Lengths are millimetres.\n\
          Option \"string unit\" \"mm\"\n\
          Scale -1 1 1 # the picture as seen from the front, not in a mirror\n\
@@ -37,8 +39,7 @@ pub(super) fn text(pack: &Pack, material: Material) -> String {
          Translate {x} {y} {floor}\n\
          Shape \"disk\" \"float radius\" {wide}\n\
          AttributeEnd\n\
-         Translate {x} {y} {z}\n\
-         {grain}",
+         {grains}",
         pack.grains.len(),
         x = centre.x,
         y = centre.y,
@@ -50,27 +51,34 @@ pub(super) fn text(pack: &Pack, material: Material) -> String {
         disk = 0.8 * size,
         floor = centre.z - half.z,
         wide = 40.0 * size,
-        grain = object(&pack.form, material),
-    );
-    for grain in &pack.grains {
-        place(&mut text, grain);
-    }
-    text
+        grains = grains(pack, material, "grain"),
+    )
 }
 
-/// A grain of radius 1.
-fn object(form: &Form, material: Material) -> String {
+/// The grains alone. The object has this name, and its medium another made of it.
+pub(super) fn grains(pack: &Pack, material: Material, name: &str) -> String {
+    let DVec3 { x, y, z } = pack.container.centre();
+    let mut text = format!("{}AttributeBegin\nTranslate {x} {y} {z}\n", object(&pack.form, material, name));
+    for grain in &pack.grains {
+        place(&mut text, grain, name);
+    }
+    text + "AttributeEnd\n"
+}
+
+/// A grain of radius 1. It is the same wherever it is defined: what it stands in then counts for its instances only.
+fn object(form: &Form, material: Material, name: &str) -> String {
     let mut text = String::new();
     if let Some(absorption) = material.absorption() {
         let spectrum: Vec<String> = absorption.iter().map(|(nm, sigma_a)| format!("{nm} {sigma_a:.4e}")).collect();
         let spectrum = spectrum.join(" ");
         text = format!(
-            "MakeNamedMedium \"inside\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [{spectrum}] \"rgb sigma_s\" [0 0 0]\n"
+            "MakeNamedMedium \"inside {name}\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [{spectrum}] \"rgb sigma_s\" [0 0 0]\n"
         );
     }
-    let _ = writeln!(text, "ObjectBegin \"grain\"\nMaterial \"dielectric\" \"float eta\" {}", material.eta());
+    let _ =
+        writeln!(text, "ObjectBegin \"{name}\"\nIdentity\nMaterial \"dielectric\" \"float eta\" {}", material.eta());
     if material.absorption().is_some() {
-        text += "MediumInterface \"inside\" \"\"\n";
+        let _ = writeln!(text, "MediumInterface \"inside {name}\" \"\"");
     }
     match (form, form.triangles()) {
         (_, Some((points, triangles))) => {
@@ -87,7 +95,7 @@ fn object(form: &Form, material: Material) -> String {
     text + "ObjectEnd\n"
 }
 
-fn place(text: &mut String, grain: &Grain) {
+fn place(text: &mut String, grain: &Grain, name: &str) {
     let (c, r) = (grain.centre, grain.radius);
     let (axis, angle) = grain.turn.to_axis_angle();
     // Writing to a string cannot fail.
@@ -95,5 +103,5 @@ fn place(text: &mut String, grain: &Grain) {
     if angle != 0.0 {
         let _ = write!(text, "Rotate {:.6} {:.7} {:.7} {:.7} ", angle.to_degrees(), axis.x, axis.y, axis.z);
     }
-    let _ = writeln!(text, "Scale {r:.6e} {r:.6e} {r:.6e} ObjectInstance \"grain\" AttributeEnd");
+    let _ = writeln!(text, "Scale {r:.6e} {r:.6e} {r:.6e} ObjectInstance \"{name}\" AttributeEnd");
 }
