@@ -262,6 +262,10 @@ fn the_scenes_of_the_gallery_go_there_and_back() {
     check("cornell", 6, 0); // its walls, as measured, are no plane: Mitsuba has no word for them
     check("marble", 6, 2);
     check("fog", 6, 1);
+    // What these have is no word of the other language: absorption by wavelength, strands, a metal by its reflectance.
+    check("grains", 6, 0);
+    check("hair", 6, 0);
+    check("separate", 6, 0);
 }
 
 /// Whatever line of a scene is left out, if it is a scene still, it is written in both languages, and read again.

@@ -21,8 +21,6 @@ use crate::peers::tyndall::Tyndall;
 use crate::shell::{output, root};
 use rows::{ENTRIES, Entry};
 
-/// By surfaces and media, by media, by media in detail.
-const LAYERS: &str = "emission,direct,indirect,unscattered,single,multiple,orders:4";
 /// A file of the book may have [bytes].
 const MOST_BYTES: u64 = 300_000;
 /// By how much `--quick` divides samples.
@@ -90,7 +88,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
 fn render(program: &Tyndall, entry: &Entry, work: &Path, options: &Options) -> Result<Told> {
     let stem = work.join(entry.name);
     let mut command = command(program, entry, options);
-    command.args(["--quiet", "--layers", LAYERS, "-o"]).arg(stem.with_extension("exr"));
+    command.args(["--quiet", "--layers", entry.layers.list(), "-o"]).arg(stem.with_extension("exr"));
     command.arg("-o").arg(stem.with_extension("png")).args(["--json", "-"]);
     let mut told: Told = serde_json::from_str(&output(&mut command)?)?;
     ensure!(told.non_finite_samples == 0, "{} samples are no radiance", told.non_finite_samples);
@@ -116,8 +114,8 @@ fn command(program: &Tyndall, entry: &Entry, options: &Options) -> Command {
 /// Puts a picture and its strips into the book; tells which of them are too large for it.
 fn hang(entry: &Entry, work: &Path, book: &Path) -> Result<Vec<String>> {
     let mut large = Vec::new();
-    for kind in ["", "-ways", "-media", "-orders"] {
-        let file = format!("{}{kind}.png", entry.name);
+    let strips = entry.layers.groups().iter().map(|group| format!("{}-{group}.png", entry.name));
+    for file in std::iter::once(format!("{}.png", entry.name)).chain(strips) {
         let bytes = std::fs::copy(work.join(&file), book.join(&file)).with_context(|| file.clone())?;
         if bytes > MOST_BYTES {
             large.push(format!("{file} has {bytes} bytes, more than {MOST_BYTES}"));

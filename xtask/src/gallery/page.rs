@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::Told;
 use super::rows::Entry;
-use super::{LAYERS, Told};
 
 /// A section for each picture that has been rendered; strips are shown where they lie in `book`.
 pub(super) fn page(entries: &[Entry], rows: &BTreeMap<String, Told>, book: &Path) -> String {
@@ -14,14 +14,15 @@ pub(super) fn page(entries: &[Entry], rows: &BTreeMap<String, Told>, book: &Path
         "# Gallery\n\n\
          Each picture comes from a scene of this repository and the command beneath it; `cargo xtask gallery` renders all of them \
          and makes this page ({:.0} CPU minutes in all). Below each, its light is [taken apart](layers.md): all light is direct \
-         and indirect, or unscattered, single and multiple in media, or order by order. Dark layers are shown brighter, by the \
+         and indirect, or unscattered, single and multiple in media, or order by order (of hair and grains, by how often \
+         they have scattered it: direct light is what was scattered once). Dark layers are shown brighter, by the \
          factor beneath. The call fails unless the layers of each group add up to the picture in every pixel, to one unit in \
          the last place. `tyndall layers IMAGE.exr --page mix.html` makes a page that mixes them anew.\n",
         cpu / 60.0
     );
     for entry in entries {
         let Some(told) = rows.get(entry.name) else { continue };
-        let Entry { name, scene, options, title, caption, .. } = entry;
+        let Entry { name, scene, layers, options, title, caption, .. } = entry;
         let options = options.iter().fold(String::new(), |text, option| text + " " + option);
         let _ = write!(
             text,
@@ -30,7 +31,7 @@ pub(super) fn page(entries: &[Entry], rows: &BTreeMap<String, Told>, book: &Path
              {} × {} pixels, {} samples each, {:.0} CPU seconds ({:.0} s by the clock); the \
              standard error is {:.1} % of a pixel in the mean.\n",
             told.spp,
-            if told.sums.is_empty() { String::new() } else { format!(" --layers {LAYERS}") },
+            if told.sums.is_empty() { String::new() } else { format!(" --layers {}", layers.list()) },
             told.width,
             told.height,
             told.spp,
@@ -44,7 +45,7 @@ pub(super) fn page(entries: &[Entry], rows: &BTreeMap<String, Told>, book: &Path
                 "\nIt was rendered without layers; `cargo xtask gallery --filter {name}` takes it apart.\n"
             );
         }
-        for (kind, sum) in ["ways", "media", "orders"].iter().zip(&told.sums) {
+        for (kind, sum) in layers.groups().iter().zip(&told.sums) {
             if book.join(format!("{name}-{kind}.png")).exists() {
                 let _ = write!(text, "\n![{title}: {sum}](gallery/{name}-{kind}.png)\n\n{sum}.\n");
             }
