@@ -65,7 +65,7 @@ pub(crate) fn beer(family: &'static str, effort: Effort) -> Made<Vec<Experiment>
 
 /// Lit by half a sky and seen along its normal a slab shows, by reciprocity, what it does to collimated light.
 pub(crate) fn slabs(family: &'static str, effort: Effort) -> Made<Vec<Experiment>> {
-    let table = rows(SLABS);
+    let (table, effort) = (rows(SLABS), effort.finer(2.0));
     let thin = |row: &&Row| row.number("tau") <= 5.0 && row.number("albedo") > 0.0;
     let experiment = |(number, row): (usize, &Row)| {
         let [albedo, tau, g, n] = ["albedo", "tau", "g", "n"].map(|column| row.number(column));
