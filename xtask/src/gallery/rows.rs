@@ -73,7 +73,7 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "marble-beam",
         scene: "marble/beam.pbrt",
-        spp: 384,
+        spp: 1024,
         layers: Layers::Media,
         options: &[],
         title: "Marble under a beam",
@@ -83,7 +83,7 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "marble-soft",
         scene: "marble/soft.pbrt",
-        spp: 256,
+        spp: 768,
         layers: Layers::Media,
         options: &[],
         title: "Marble under soft light",
