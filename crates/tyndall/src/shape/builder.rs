@@ -249,7 +249,8 @@ impl GeometryBuilder {
             let shown = |group: u32| !self.groups[group as usize].iter().any(|object| is(object, absent));
             let instances = (0..).zip(&self.instances).filter(|(_, instance)| shown(instance.group));
             let entries = instances.flat_map(|(index, _)| self.instance_entries(index, &groups)).collect();
-            self.tree(self.world.iter().filter(|object| !is(object, absent)), entries)
+            let world: Vec<_> = self.world.iter().filter(|object| !is(object, absent)).copied().collect();
+            self.tree(&world, entries)
         };
         let world = without(Granular::Proxy)?;
         let proxied = if self.world.iter().any(|object| is(object, Granular::Proxy)) {
@@ -268,11 +269,7 @@ impl GeometryBuilder {
         Ok((geometry, proxied))
     }
 
-    fn tree<'a>(
-        &self,
-        objects: impl IntoIterator<Item = &'a u32>,
-        mut entries: Vec<Entry>,
-    ) -> Result<Tree, ShapeError> {
+    fn tree(&self, objects: &[u32], mut entries: Vec<Entry>) -> Result<Tree, ShapeError> {
         for &object in objects {
             match &self.shapes[object as usize] {
                 Shape::Mesh(mesh) => entries.extend(

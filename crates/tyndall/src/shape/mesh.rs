@@ -26,7 +26,8 @@ impl Mesh {
     /// The vertices of a triangle [length].
     #[inline]
     pub fn triangle(&self, prim: u32) -> [Vec3; 3] {
-        self.indices[prim as usize].map(|i| self.positions[i as usize])
+        let [a, b, c] = self.indices[prim as usize];
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// The parameters of the corners of a triangle.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{Geometry, Mesh, ObjectId, Patch, Shape};
-use crate::math::Vec3;
+use crate::{math::Vec3, sampling::rng::mix64};
 
 /// The edges of the faces of a surface, counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -97,7 +97,10 @@ fn patch_edges(patch: &Patch) -> impl Iterator<Item = Edge> + use<> {
 }
 
 fn face_edges<const N: usize>(corners: [Vec3; N], reversed: bool) -> impl Iterator<Item = Edge> {
-    let names = corners.map(|p| (p + Vec3::ZERO).to_array().map(f32::to_bits)); // −0 is 0
+    let names = corners.map(|p| {
+        let Vec3 { x, y, z } = p + Vec3::ZERO; // −0 is 0
+        [x.to_bits(), y.to_bits(), z.to_bits()]
+    });
     (0..N)
         .map(move |i| (names[i], names[(i + 1) % N]))
         .filter(|(a, b)| a != b)
@@ -112,16 +115,11 @@ fn sum(edges: impl Iterator<Item = Edge>) -> u128 {
     })
 }
 
-/// Two rounds of `SplitMix64` over the coordinates, from two seeds.
+/// `SplitMix64` over the coordinates, two in a word, from two seeds.
 fn hash(a: &[u32; 3], b: &[u32; 3]) -> u128 {
-    let half = |seed: u64| {
-        a.iter().chain(b).fold(seed, |h, &word| {
-            let mut z = (h ^ u64::from(word)).wrapping_add(0x9e37_79b9_7f4a_7c15);
-            z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-            z ^ z >> 31
-        })
-    };
+    let word = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
+    let words = [word(a[0], a[1]), word(a[2], b[0]), word(b[1], b[2])];
+    let half = |seed: u64| words.iter().fold(seed, |hash, &word| mix64(hash ^ word));
     u128::from(half(0x243f_6a88_85a3_08d3)) << 64 | u128::from(half(0x1319_8a2e_0370_7344))
 }
 
