@@ -4,8 +4,14 @@ use tyndall::{
     integrator::{Analog, Deep, Integrator, VolPath},
     lecture::Lecture,
 };
+use tyndall_formats::desc::IntegratorDesc;
 
 use crate::args::IntegratorName;
+
+/// What a scene says of paths; among grains they are followed to their end.
+pub(crate) fn explicit(said: &IntegratorDesc) -> VolPath {
+    VolPath { max_depth: said.max_depth.map(|depth| depth.value), counted: said.counted, ..VolPath::default() }
+}
 
 /// The estimator of a name; the settings are for the path tracer alone.
 pub(crate) fn integrator(name: IntegratorName, settings: VolPath) -> Box<dyn Integrator> {

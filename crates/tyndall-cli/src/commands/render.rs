@@ -17,7 +17,7 @@ use tyndall_formats::film::{Image, Metadata};
 use crate::{
     args::{ColorName, IntegratorName, RenderOptions, SamplerName, word},
     beside::Beside,
-    integrators::integrator,
+    integrators::{self, integrator},
     interrupt,
     load::{Loaded, load},
     outputs::{Outputs, command_line, write_text},
@@ -146,9 +146,8 @@ impl Job<'_> {
 
 /// The settings of paths among grains without a proxy.
 fn path_tracer(options: &RenderOptions, loaded: &Loaded) -> VolPath {
-    let said = &loaded.desc.integrator;
-    let max_depth = options.max_depth.or(said.max_depth.map(|depth| depth.value));
-    VolPath { max_depth, counted: said.counted, ..VolPath::default() }
+    let said = integrators::explicit(&loaded.desc.integrator);
+    VolPath { max_depth: options.max_depth.or(said.max_depth), ..said }
 }
 
 /// Paths with proxies of grains, if they are asked for.

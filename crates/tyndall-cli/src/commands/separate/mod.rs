@@ -13,7 +13,6 @@ use std::{
 use tyndall::{
     film::{Crop, Film},
     integrator::Integrator,
-    integrator::VolPath,
     light::Light,
     math::Vec3,
     render::{self, Observer, Settings, render},
@@ -25,7 +24,7 @@ use tyndall_lab::separate::{MARGIN, Outcome, Parts, Pattern, Place, Projection, 
 use super::render::fit_into_memory;
 use crate::{
     args::{IntegratorName, SamplerName, word},
-    integrators::integrator,
+    integrators::{explicit, integrator},
     interrupt,
     load::{Loaded, load},
     outputs::{Outputs, command_line, is_png, stem_of_scene, write_text},
@@ -173,14 +172,7 @@ impl Bench {
         let pixels = u64::from(crop.width()) * u64::from(crop.height());
         fit_into_memory(pixels, VALUES)?;
         Ok(Self {
-            integrator: integrator(
-                IntegratorName::Volpath,
-                VolPath {
-                    max_depth: said.max_depth.map(|depth| depth.value),
-                    counted: said.counted,
-                    ..VolPath::default()
-                },
-            ),
+            integrator: integrator(IntegratorName::Volpath, explicit(said)),
             settings: Settings { spp: options.spp, seed: options.seed, crop: Some(crop), ..Settings::default() },
             progress: Progress::new(pixels, None, true, options.quiet),
             total: pixels * u64::from(options.spp) * pictures,
