@@ -86,15 +86,8 @@ pub fn offset_point(p: Vec3, error: Vec3, ng: Vec3, dir: Vec3) -> Vec3 {
     let ng = if dir.dot(ng) < 0.0 { -ng } else { ng };
     let by = ng * ng.abs().dot(error);
     let moved = p + by;
-    let away = |moved: f32, by: f32| {
-        if by > 0.0 {
-            moved.next_up()
-        } else if by < 0.0 {
-            moved.next_down()
-        } else {
-            moved
-        }
-    };
+    // The sum is rounded: away from the surface, by one to two units in the last place.
+    let away = |moved: f32, by: f32| if by == 0.0 { moved } else { moved + (moved * f32::EPSILON).abs().copysign(by) };
     Vec3::new(away(moved.x, by.x), away(moved.y, by.y), away(moved.z, by.z))
 }
 

@@ -1,8 +1,10 @@
 //! How far round a surface of revolution goes, and between which heights.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
+
+use crate::math::fast;
 
 /// The azimuths of a surface of revolution: from 0 (its own x axis) to a full turn or a part of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +39,7 @@ impl Turn {
 /// The azimuth of a vector in turns, in [0, 1) up to rounding \[1\].
 #[inline]
 pub(super) fn turns(across: DVec2) -> f64 {
-    let turn = across.y.atan2(across.x) / TAU;
+    let turn = fast::atan2(across.y, across.x) / TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }
 
@@ -70,6 +72,12 @@ impl SpherePart {
     pub(super) fn holds(&self, n: DVec3) -> bool {
         let [low, high] = self.z;
         (low <= -1.0 || n.z >= low) && (high >= 1.0 || n.z <= high) && self.turn.holds(n.truncate())
+    }
+
+    /// Angles of its southern and northern rim from the axis [rad].
+    #[inline]
+    pub(super) fn rims(&self) -> [f64; 2] {
+        if self.z == Self::WHOLE.z { [PI, 0.0] } else { self.z.map(f64::acos) }
     }
 
     /// Share of the area of the sphere \[1\].

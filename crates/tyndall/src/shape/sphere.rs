@@ -14,7 +14,7 @@ use super::{
     interaction::Point,
     part::{SpherePart, turns},
 };
-use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
+use crate::math::{Bounds, Ray, Transform, Vec2, Vec3, fast};
 
 /// A sphere or a part of it. Its poles are along its own z axis: `u` is the azimuth over its range, `v` runs from the
 /// south pole to the north pole, or from the southern rim to the northern one, with the angle from the axis.
@@ -174,8 +174,8 @@ impl Sphere {
         let place = self.placement.as_ref();
         let local = place.map_or(p, |placement| placement.local_point(p)) - self.centre.as_dvec3();
         let n = (self.axes * local).normalize_or(DVec3::Z);
-        let SpherePart { z, turn } = self.part;
-        let [south, north] = z.map(f64::acos);
+        let turn = self.part.turn;
+        let [south, north] = self.part.rims();
         let rho = n.truncate().length();
         let [cos, sin] = if rho > 0.0 { [n.x / rho, n.y / rho] } else { [1.0, 0.0] };
         let du = DVec3::new(-n.y, n.x, 0.0) * turn.radians();
@@ -190,10 +190,10 @@ impl Sphere {
 
     /// `(u, v)` of a direction from the centre, and the derivative of the point by `u`.
     fn parameters(&self, n: DVec3) -> (Vec2, DVec3) {
-        let SpherePart { z, turn } = self.part;
-        let [south, north] = z.map(f64::acos);
+        let turn = self.part.turn;
+        let [south, north] = self.part.rims();
         let u = turns(n.truncate()) / turn.turns();
-        let v = (n.z.clamp(-1.0, 1.0).acos() - south) / (north - south);
+        let v = (fast::atan2(n.truncate().length(), n.z) - south) / (north - south);
         let around = DVec3::new(-n.y, n.x, 0.0);
         let dpdu = if around == DVec3::ZERO { DVec3::Y } else { around };
         (Vec2::new(u as f32, v as f32), dpdu * (turn.radians() * f64::from(self.radius)))
