@@ -32,6 +32,7 @@ impl Path {
         if f.is_zero() {
             return;
         }
+        let Some(odds) = attempt.towards(scene, reference.p, sample.dir) else { return };
         let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
         let origin = vertex.shadow_origin(sample.dir);
         let mut proxied_within;
@@ -52,7 +53,7 @@ impl Path {
             shadow::transmittance(scene, origin, sample.dir, &sample.target, (inside, within), wavelengths, tally);
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
-            let Attempt { odds, supposed, .. } = *attempt;
+            let supposed = attempt.supposed;
             let pdf = probability * sample.pdf;
             let weight = weights.light_sample([supposed * pdf, pdf], scatter_pdf, transmittance);
             let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
@@ -116,7 +117,9 @@ impl Path {
     /// Light at a collision that was aimed at a lamp.
     #[inline]
     pub(super) fn sample_aimed(&self, scene: &Scene, aimed: &Aimed, sink: &mut impl Sink, tally: &mut Tally) {
-        let Aimed { vertex, weights, numbers } = aimed;
-        self.sample_light(scene, vertex, (&Attempt::CERTAIN, *numbers), (weights, &self.history), sink, tally);
+        let Aimed { p, weights, numbers } = aimed;
+        let Some(medium) = self.inside.id() else { return };
+        let vertex = Vertex::Medium { p: *p, dir: self.ray.dir, medium, phase: &scene.medium(medium).phase };
+        self.sample_light(scene, &vertex, (&Attempt::CERTAIN, *numbers), (weights, &self.history), sink, tally);
     }
 }

@@ -257,7 +257,7 @@ impl Path {
             self.part_wavelengths(scene);
         }
         let reference = vertex.reference();
-        if light.made && vertex.can_use_light_samples() {
+        if light.is_made() && vertex.can_use_light_samples() {
             let numbers = self.sampler.light(self.history.vertices);
             self.sample_light(scene, vertex, (&light, numbers), (&self.weights, &self.history), sink, tally);
         }

@@ -5,7 +5,7 @@ use crate::{
     integrator::{
         VolPath,
         volpath::Sink,
-        walk::{Announced, Ball, Depths, End, Walker},
+        walk::{Announced, Ball, Depths, End, Walker, light_odds},
     },
     light::Reference,
     math::{Ray, Vec3},
@@ -79,22 +79,46 @@ enum Left {
     Collision,
 }
 
-/// Whether light is sampled at a vertex, and how likely that was.
+/// Whether light is sampled at a vertex, and how likely that was: a number is drawn once, and what more becomes known of the
+/// way to the light can only lower the odds that it is held against.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attempt {
-    /// The probability \[1\].
+    /// The probability so far \[1\].
     pub odds: f32,
     /// The probability that multiple importance sampling supposes, at least the true one \[1\].
     pub supposed: f32,
-    /// Whether it is.
-    pub made: bool,
+    /// The number that was drawn, in [0, 1].
+    draw: f32,
+    /// No surface and no light is here.
+    ball: Ball,
+    /// How far another is worth to look for, where this one may be loose [length].
+    closer: f32,
+    /// The least `σ_t` of all lanes [1/length].
+    sigma_min: f32,
 }
 
 impl Attempt {
     /// As at every surface.
-    pub const CERTAIN: Self = Self { odds: 1.0, supposed: 1.0, made: true };
+    pub const CERTAIN: Self =
+        Self { odds: 1.0, supposed: 1.0, draw: 0.0, ball: Ball::NONE, closer: 0.0, sigma_min: 0.0 };
     /// As in a medium that no light reaches: what paths run into there counts in full.
-    pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, made: false };
+    pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, draw: 1.0, ..Self::CERTAIN };
+
+    /// Whether it is.
+    #[inline]
+    pub fn is_made(&self) -> bool {
+        self.draw <= self.odds
+    }
+
+    /// The probability with which a light along `dir` from `p` is looked for \[1\]: no more than the transmittance as far as a ball
+    /// reaches. `None` if it is not.
+    #[inline]
+    pub fn towards(&self, scene: &Scene, p: Vec3, dir: Vec3) -> Option<f32> {
+        let lowered =
+            |odds: f32, way: f32| Some(light_odds(self.sigma_min * way).min(odds)).filter(|o| self.draw <= *o);
+        let odds = lowered(self.odds, self.ball.reach(p, dir))?;
+        if self.closer == 0.0 { Some(odds) } else { lowered(odds, Ball::around(scene, p, self.closer).radius) }
+    }
 }
 
 impl Default for Surroundings {
@@ -142,13 +166,14 @@ impl Path {
     pub(crate) fn look_around(&mut self, scene: &Scene, p: Vec3) -> Attempt {
         let Some(depths) = self.depths(scene) else { return self.attempt(scene) };
         if std::mem::replace(&mut self.around.left, Left::Nothing) == Left::Collision {
-            return Attempt { odds: 1.0, supposed: depths.odds(self.around.ball.room(p)), made: false };
+            return Attempt { supposed: depths.odds(self.around.ball.room(p)), ..Attempt::NONE };
         }
         let most = depths.farthest(scene);
         let around = Ball::around(scene, p, most);
-        let odds = depths.odds(around.radius);
-        self.around.ball = self.around.behind.touching(scene, p, around, most);
-        Attempt { odds, supposed: 1.0, made: odds == 1.0 || self.sampler.rng.next_positive() <= odds }
+        let ball = self.around.behind.touching(scene, p, around, most);
+        self.around.ball = ball;
+        let (odds, draw) = (depths.odds(around.radius), self.sampler.rng.next_positive());
+        Attempt { odds, supposed: 1.0, draw, ball, closer: 0.0, sigma_min: depths.sigma_min }
     }
 
     /// A light sample that a walk has announced, and what the path weighs there; `None` if it is not made: the ball of the
@@ -162,14 +187,19 @@ impl Path {
     ) -> Option<(Attempt, PathWeights)> {
         let depths = self.around.depths?;
         let supposed = announced.odds;
-        let odds = depths.odds(Ball::around(scene, announced.p, depths.farthest(scene)).radius).min(supposed);
-        if odds < supposed && rng.next_positive() * supposed > odds {
-            return None;
-        }
+        let draw = rng.next_positive() * supposed;
+        let attempt = Attempt {
+            odds: supposed,
+            supposed,
+            draw,
+            ball: self.around.ball,
+            closer: depths.farthest(scene),
+            sigma_min: depths.sigma_min,
+        };
         let settled = depths.settle(announced.collisions, announced.length);
         let mut weights = self.weights;
         weights.walk(settled.beta, settled.density);
-        Some((Attempt { odds, supposed, made: true }, weights))
+        Some((attempt, weights))
     }
 
     /// Begins a walk, if there is room for one.

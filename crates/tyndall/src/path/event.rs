@@ -1,6 +1,6 @@
 //! What happens next to a path: free flight first, ray second.
 
-use super::{Path, PathWeights, Vertex, aim::Aim};
+use super::{Path, PathWeights, aim::Aim};
 use crate::{
     math::{Bounds, Vec3, fast},
     medium::{Inside, MediumId, bodies::Part},
@@ -42,9 +42,9 @@ pub enum Event<'s> {
 
 /// A collision that was aimed at a lamp.
 #[derive(Debug, Clone, Copy)]
-pub struct Aimed<'s> {
-    /// Where, and how it scatters.
-    pub vertex: Vertex<'s>,
+pub struct Aimed {
+    /// Where [length].
+    pub p: Vec3,
     /// What the path would weigh there.
     pub weights: PathWeights,
     /// Random numbers for the light.
@@ -65,7 +65,7 @@ impl Path {
         scene: &'s Scene,
         lamp: Option<Bounds>,
         tally: &mut Tally,
-    ) -> (Event<'s>, Option<Aimed<'s>>) {
+    ) -> (Event<'s>, Option<Aimed>) {
         if let Some(collision) = self.unfinished_collision(scene) {
             return (collision, None);
         }
@@ -136,7 +136,7 @@ impl Path {
 
     /// A collision that is aimed at a lamp, to find light and for nothing else: the path goes where its flight ends.
     #[inline]
-    fn collide_aimed<'s>(&mut self, scene: &'s Scene, aim: &Aim) -> Option<Aimed<'s>> {
+    fn collide_aimed(&mut self, scene: &Scene, aim: &Aim) -> Option<Aimed> {
         let Inside::Medium { id, coefficients } = &self.inside else { return None };
         let [u, numbers @ ..] = match self.history.flights {
             1 => self.sampler.aim(self.history.vertices),
@@ -149,8 +149,7 @@ impl Path {
         }
         let mut weights = self.weights;
         weights.collide_aimed(coefficients.sigma_t, coefficients.sigma_s, transmittance, aim.pdf(distance));
-        let vertex = Vertex::Medium { p, dir: self.ray.dir, medium: *id, phase: &scene.medium(*id).phase };
-        Some(Aimed { vertex, weights, numbers })
+        Some(Aimed { p, weights, numbers })
     }
 
     #[inline]

@@ -108,10 +108,16 @@ impl Point {
     /// Rounds to single precision: the only rounding that matters.
     pub(super) fn round(&self, object: ObjectId, prim: u32, instance: u32) -> Interaction {
         let p = self.p.as_vec3();
-        let ng = self.ng.normalize_or_zero().as_vec3();
+        let ng = if is_unit(self.ng) { self.ng } else { self.ng.normalize_or_zero() }.as_vec3();
         let ns = if self.ns == self.ng { ng } else { self.ns.try_normalize().map_or(ng, DVec3::as_vec3) };
         let ns = if ns.dot(ng) < 0.0 { -ns } else { ns };
         let error = p.abs() * gamma(1) + Vec3::splat((self.error as f32).next_up());
         Interaction { p, error, ng, ns, uv: self.uv, dpdu: self.dpdu.as_vec3(), object, prim, instance }
     }
+}
+
+/// Whether a vector has length 1 already, as far as single precision can tell.
+#[inline]
+fn is_unit(v: DVec3) -> bool {
+    (v.length_squared() - 1.0).abs() < 1e-9
 }

@@ -16,6 +16,9 @@ use super::{
 };
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3, fast};
 
+/// Radii up to which a distance in single precision tells a point of a sphere well enough \[1\].
+const NEAR: f32 = 64.0;
+
 /// A sphere or a part of it. Its poles are along its own z axis: `u` is the azimuth over its range, `v` runs from the
 /// south pole to the north pole, or from the southern rim to the northern one, with the angle from the axis.
 #[derive(Debug, Clone, Copy)]
@@ -149,11 +152,16 @@ impl Sphere {
 
     fn local_point(&self, ray: &Ray, t: f32) -> Point {
         let (centre, radius) = (self.centre.as_dvec3(), f64::from(self.radius));
-        // `t` was rounded: of a small sphere far away it has lost the place, so solve again.
-        let t = match roots(centre, radius, ray) {
-            Some([near, far]) if (near - f64::from(t)).abs() <= (far - f64::from(t)).abs() => near,
-            Some([_, far]) => far,
-            None => f64::from(t),
+        // `t` was rounded: of a small sphere far away it has lost the place, so solve again. Near it the ray itself is no better.
+        let is_near = (ray.dir * t).length() <= NEAR * self.radius;
+        let t = if is_near {
+            f64::from(t)
+        } else {
+            match roots(centre, radius, ray) {
+                Some([near, far]) if (near - f64::from(t)).abs() <= (far - f64::from(t)).abs() => near,
+                Some([_, far]) => far,
+                None => f64::from(t),
+            }
         };
         let outward = (ray.origin.as_dvec3() - centre + ray.dir.as_dvec3() * t).normalize_or(DVec3::Z);
         let local = self.axes * outward;

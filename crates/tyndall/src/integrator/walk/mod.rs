@@ -27,7 +27,7 @@
 mod step;
 pub(crate) mod together;
 
-use step::light_odds;
+pub(crate) use step::light_odds;
 
 use crate::{
     math::{Vec3, rounding::gamma},

@@ -9,7 +9,7 @@ use crate::{
 
 /// The probability of a light sample where the transmittance to any light is at most `exp(−tau)`.
 #[inline(always)]
-pub(super) fn light_odds(tau: f32) -> f32 {
+pub(crate) fn light_odds(tau: f32) -> f32 {
     fast::exp(-tau).min(1.0)
 }
 
