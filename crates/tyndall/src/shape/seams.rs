@@ -58,11 +58,13 @@ impl Geometry {
             Shape::Disk(_) | Shape::Cylinder(_) | Shape::Patch(_) | Shape::Curves(_) => false,
             Shape::Mesh(mesh) => {
                 let about = mesh.positions.first().map_or(DVec3::ZERO, |p| p.as_dvec3());
-                let volume = (0..mesh.indices.len() as u32).map(|prim| {
-                    let [a, b, c] = mesh.triangle(prim).map(|p| p.as_dvec3() - about);
+                let volume = |face: &[u32; 3]| {
+                    let [a, b, c] = face.map(|corner| mesh.positions[corner as usize].as_dvec3() - about);
                     a.dot(b.cross(c))
-                });
-                (volume.sum::<f64>() < 0.0) != mesh.reversed
+                };
+                // By parts of a fixed size: the sum is the same on any number of threads.
+                let parts = mesh.indices.par_chunks(1 << 16).map(|faces| faces.iter().map(volume).sum());
+                (parts.collect::<Vec<f64>>().iter().sum::<f64>() < 0.0) != mesh.reversed
             }
         }
     }
