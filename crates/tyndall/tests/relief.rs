@@ -226,7 +226,10 @@ fn weights_are_values_over_densities_on_a_relief() {
                     let Some(scattered) = vertex.sample([random(), random(), random()]) else { continue };
                     let (value, pdf) = vertex.eval(scattered.ray.dir);
                     let (found, expected) = (value.lane(0) / pdf, scattered.weight.lane(0));
-                    assert!((found - expected).abs() < 2e-3 * expected.max(1e-3), "{rule:?}: {found} {expected}");
+                    // A direction of the world is rounded, which moves a grazing one against the relief.
+                    let Vertex::Surface { frame, .. } = &vertex else { panic!("on a surface") };
+                    let rounding = 4.0 * f32::EPSILON / frame.n.dot(scattered.ray.dir).abs();
+                    assert!((found - expected).abs() <= (2e-3 + rounding) * expected, "{rule:?}: {found} {expected}");
                     assert!((scattered.pdf / pdf - 1.0).abs() < 2e-3, "{rule:?}: {pdf} {}", scattered.pdf);
                     let crosses = ray.dir.dot(hit.ng) * scattered.ray.dir.dot(hit.ng) > 0.0;
                     if even.index().is_some() {
