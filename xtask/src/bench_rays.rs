@@ -4,6 +4,8 @@
 //! of 256 rays; what is printed is the median rate and the median ratio of neighbouring turns, so that a busy machine
 //! disturbs both alike. Embree is run with its robust flag. It is looked for in `target/venv` (`python3 -m venv
 //! target/venv && target/venv/bin/pip install embreex`); without it, only our rates are printed.
+//!
+//! Then the same over a ball with 20,000 hairs, against Embree's round B-splines.
 
 use std::{
     hint::black_box,
@@ -16,7 +18,7 @@ use anyhow::{Result, ensure};
 use glam::{DMat4, DVec3};
 use tyndall::{
     math::{Ray, Transform, Vec3},
-    shape::{Geometry, GeometryBuilder, Mesh, Sphere},
+    shape::{Basis, Curves, Geometry, GeometryBuilder, Knot, Mesh, Sphere, Style},
 };
 
 use self::meshes::{Random, at_seam, displaced_sphere};
@@ -52,7 +54,8 @@ pub(crate) fn run() -> Result<()> {
     builder.add_mesh(mesh.clone(), &Transform::IDENTITY, false)?;
     let ours = builder.build()?;
     println!("{} triangles, built in {:.3} s", mesh.indices.len(), start.elapsed().as_secs_f64());
-    let theirs = find_embree().map(|path| embree::Scene::new(&path, &mesh)).transpose()?;
+    let library = find_embree();
+    let theirs = library.as_deref().map(|path| embree::Scene::new(path, &mesh)).transpose()?;
     if theirs.is_none() {
         println!("no Embree in target/venv: only our rays");
     }
@@ -60,6 +63,7 @@ pub(crate) fn run() -> Result<()> {
     for case in cases(&mesh) {
         compare(&case, &ours, theirs.as_ref());
     }
+    strands(library.as_deref())?;
     spheres()?;
     clearance(&ours);
     leaks(&mesh, &ours, theirs.as_ref());
@@ -122,6 +126,49 @@ fn compare(case: &Case, ours: &Geometry, theirs: Option<&embree::Scene>) {
     } else {
         println!("{:<22} {:>10.2}   hits {}", case.name, rate(&a), hits.0 / ROUNDS);
     }
+}
+
+/// Strands that stand on a ball of radius 1 and bend, seen from outside and met by light that is among them.
+fn strands(library: Option<&Path>) -> Result<()> {
+    const POINTS: usize = 8;
+    let random = &mut Random(5);
+    let (mut points, mut segments) = (Vec::new(), Vec::new());
+    let mut curves = Curves::new(Style::Round);
+    for _ in 0..20_000 {
+        let (mut p, mut dir) = (random.dir(), random.dir() * 0.5);
+        dir += p;
+        let knots: Vec<Knot> = (0..POINTS)
+            .map(|i| {
+                dir = (dir + random.in_ball() * 0.4).normalize();
+                p += dir * 0.08;
+                Knot { p, radius: 0.002 * (1.0 - 0.7 * i as f32 / POINTS as f32) }
+            })
+            .collect();
+        segments.extend((0..POINTS - 3).map(|i| (points.len() + i) as u32));
+        points.extend(knots.iter().map(|knot| knot.p.extend(knot.radius).to_array()));
+        curves.push(Basis::CubicBSpline, &knots);
+    }
+    let start = Instant::now();
+    let mut builder = GeometryBuilder::new();
+    builder.add_curves(curves, &Transform::IDENTITY)?;
+    let ours = builder.build()?;
+    println!("{} segments of hair, built in {:.3} s", segments.len(), start.elapsed().as_secs_f64());
+    let theirs = library.map(|path| embree::Scene::of_strands(path, &points, &segments)).transpose()?;
+    let mut case = |name, ray: &mut dyn FnMut(&mut Random) -> Ray| Case {
+        name,
+        rays: (0..RAYS).map(|_| (ray(random), f32::INFINITY)).collect(),
+    };
+    let cases = [
+        case("hair, from outside", &mut |r| {
+            let origin = r.dir() * 4.0;
+            Ray::new(origin, (r.in_ball() * 1.4 - origin).normalize())
+        }),
+        case("hair, from within", &mut |r| Ray::new(r.dir() * (1.05 + 0.25 * r.unit()), r.dir())),
+    ];
+    for case in &cases {
+        compare(case, &ours, theirs.as_ref());
+    }
+    Ok(())
 }
 
 /// Many small balls: direct, and as instances of one.

@@ -19,10 +19,13 @@ use tyndall::{math::Ray, shape::Mesh};
 type Handle = *mut c_void;
 
 const GEOMETRY_TRIANGLE: c_int = 0;
+const GEOMETRY_ROUND_BSPLINE_CURVE: c_int = 32;
 const BUFFER_INDEX: c_int = 0;
 const BUFFER_VERTEX: c_int = 1;
+const FORMAT_UINT: c_int = 0x5001;
 const FORMAT_UINT3: c_int = 0x5003;
 const FORMAT_FLOAT3: c_int = 0x9003;
+const FORMAT_FLOAT4: c_int = 0x9004;
 const SCENE_FLAG_ROBUST: c_int = 1 << 2;
 const INVALID: c_uint = c_uint::MAX;
 
@@ -44,7 +47,7 @@ struct RayHit {
     instance: [c_uint; 2],
 }
 
-/// One mesh in an Embree scene with the robust flag.
+/// One mesh, or many strands, in an Embree scene with the robust flag.
 #[derive(Debug)]
 pub(crate) struct Scene {
     handle: Handle,
@@ -55,7 +58,27 @@ pub(crate) struct Scene {
 impl Scene {
     /// Loads the library and builds its tree over `mesh`.
     pub(crate) fn new(library: &Path, mesh: &Mesh) -> Result<Self> {
+        let vertices: Vec<[f32; 3]> = mesh.positions.iter().map(glam::Vec3::to_array).collect();
         // SAFETY: see the head of this module.
+        unsafe { Self::of(library, GEOMETRY_TRIANGLE, (FORMAT_FLOAT3, &vertices), (FORMAT_UINT3, &mesh.indices)) }
+    }
+
+    /// The same over round cubic B-splines: `points` with their radii, and the first of the four points of each segment.
+    pub(crate) fn of_strands(library: &Path, points: &[[f32; 4]], segments: &[u32]) -> Result<Self> {
+        // SAFETY: see the head of this module.
+        unsafe { Self::of(library, GEOMETRY_ROUND_BSPLINE_CURVE, (FORMAT_FLOAT4, points), (FORMAT_UINT, segments)) }
+    }
+
+    /// # Safety
+    /// The library is Embree 4.4, the formats are those of the items, and what the items of a geometry of this kind refer to is
+    /// there.
+    unsafe fn of<V: Copy, I: Copy>(
+        library: &Path,
+        kind: c_int,
+        (vertex_format, vertices): (c_int, &[V]),
+        (index_format, indices): (c_int, &[I]),
+    ) -> Result<Self> {
+        // SAFETY: by the caller.
         unsafe {
             let library = Library::new(library).with_context(|| format!("cannot load {}", library.display()))?;
             let new_device = library.get::<unsafe extern "C" fn(*const c_char) -> Handle>(b"rtcNewDevice")?;
@@ -67,11 +90,11 @@ impl Scene {
             let commit_scene = library.get::<unsafe extern "C" fn(Handle)>(b"rtcCommitScene")?;
             let device = new_device(c"threads=1".as_ptr());
             ensure!(!device.is_null(), "Embree has no device");
-            let (scene, geometry) = (new_scene(device), new_geometry(device, GEOMETRY_TRIANGLE));
+            let (scene, geometry) = (new_scene(device), new_geometry(device, kind));
+            ensure!(!geometry.is_null(), "this Embree has no such geometry");
             set_flags(scene, SCENE_FLAG_ROBUST);
-            let vertices: Vec<[f32; 3]> = mesh.positions.iter().map(glam::Vec3::to_array).collect();
-            fill(&library, geometry, BUFFER_VERTEX, FORMAT_FLOAT3, &vertices)?;
-            fill(&library, geometry, BUFFER_INDEX, FORMAT_UINT3, &mesh.indices)?;
+            fill(&library, geometry, BUFFER_VERTEX, vertex_format, vertices)?;
+            fill(&library, geometry, BUFFER_INDEX, index_format, indices)?;
             commit_geometry(geometry);
             attach(scene, geometry);
             commit_scene(scene);

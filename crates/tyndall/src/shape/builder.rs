@@ -276,9 +276,9 @@ impl GeometryBuilder {
                     (0..mesh.indices.len() as u32)
                         .map(|prim| Entry::Triangle(TriangleId { object, prim }, mesh.triangle(prim))),
                 ),
-                Shape::Curves(curves) => entries.extend(
-                    curves.pieces().map(|(piece, bounds)| Entry::Other(Primitive::Curve { object, piece }, bounds)),
-                ),
+                Shape::Curves(curves) => {
+                    entries.extend(curves.pieces().map(|(piece, sheath)| Entry::Piece(object, piece, sheath)));
+                }
                 shape => entries.push(Entry::Other(self.primitive(object), shape.bounds())),
             }
         }

@@ -61,7 +61,7 @@ impl Geometry {
 }
 
 fn tree_bytes(tree: &Tree) -> usize {
-    size_of_val(&*tree.nodes) + size_of_val(&*tree.packets) + size_of_val(&*tree.others)
+    size_of_val(&*tree.nodes) + size_of_val(&*tree.packets) + size_of_val(&*tree.bundles) + size_of_val(&*tree.others)
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::{
     Disk, Geometry, Patch, Shape, Sphere,
     bvh::{
-        Content, NONE, Node, Packet, Primitive, Tree,
+        Bundle, Content, NONE, Node, Packet, Primitive, Tree,
         traverse::{Stack, open},
     },
     instance::Placement,
@@ -60,11 +60,8 @@ impl Geometry {
         match *primitive {
             Primitive::Sphere { centre, radius, .. } => to_sphere(centre, radius, p),
             Primitive::Shape { object, .. } => self.shapes[object as usize].clearance(p),
-            Primitive::Curve { object, ref piece } => match &self.shapes[object as usize] {
-                Shape::Curves(curves) => curves.clearance(piece, p),
-                _ => f64::INFINITY,
-            },
-            Primitive::Instance(_) => f64::INFINITY, // groups hold no instances
+            // Groups hold no instances, and pieces of strands stand in bundles.
+            Primitive::Curve { .. } | Primitive::Instance(_) => f64::INFINITY,
         }
     }
 }
@@ -172,6 +169,11 @@ fn search<S: Simd>(simd: S, tree: &Tree, p: DVec3, cap: f64, mut visit: impl FnM
                     nearest = nearest.min(to_packet(simd, packet, p, limit));
                 }
             }
+            Content::Bundles { first, count } => {
+                for bundle in &tree.bundles[first..first + count] {
+                    nearest = nearest.min(to_bundle(simd, bundle, point));
+                }
+            }
             Content::Others { first, count } => {
                 for primitive in &tree.others[first..first + count] {
                     nearest = nearest.min(visit(primitive, nearest));
@@ -248,6 +250,16 @@ fn beside_triangles<S: Simd>(simd: S, packet: &Packet, axis: usize, p: f32) -> f
     beside(simd, a.min(b).min(c), a.max(b).max(c), p)
 }
 
+/// A lower bound on the distance to the pieces of a bundle: to their sheaths.
+#[inline(always)]
+fn to_bundle<S: Simd>(simd: S, bundle: &Bundle, p: Vec3) -> f64 {
+    let [a, b] = [from(simd, &bundle.ends[0], p), from(simd, &bundle.ends[1], p)];
+    let distance = to_edge(simd, a, minus(b, a)).sqrt();
+    let reach = (dot(a, a).max(dot(b, b))).sqrt() + f32x8::splat(simd, p.abs().max_element());
+    let slack = reach * f32x8::splat(simd, 8.0 * f32::EPSILON);
+    f64::from((distance - f32x8::simd_from(simd, bundle.radius) - slack).reduce_min())
+}
+
 /// `1/sin` of the angle between two edges above which double precision is asked.
 const FLATTEST: f32 = 8.0;
 
@@ -259,7 +271,8 @@ type Vectors<S> = [f32x8<S>; 3];
 #[inline(always)]
 fn to_triangles<S: Simd>(simd: S, packet: &Packet, p: Vec3) -> (f32x8<S>, mask32x8<S>) {
     let zero = f32x8::splat(simd, 0.0);
-    let [a, b, c] = [from(simd, packet, 0, p), from(simd, packet, 1, p), from(simd, packet, 2, p)];
+    let [a, b, c] = &packet.vertex;
+    let [a, b, c] = [from(simd, a, p), from(simd, b, p), from(simd, c, p)];
     let [ab, bc, ca] = [minus(b, a), minus(c, b), minus(a, c)];
     let edges = to_edge(simd, a, ab).min(to_edge(simd, b, bc)).min(to_edge(simd, c, ca));
 
@@ -278,10 +291,9 @@ fn to_triangles<S: Simd>(simd: S, packet: &Packet, p: Vec3) -> (f32x8<S>, mask32
     (distance - slack, spread.simd_lt(f32x8::splat(simd, FLATTEST)))
 }
 
-/// From a point to a vertex of each triangle.
+/// From a point to eight others.
 #[inline(always)]
-fn from<S: Simd>(simd: S, packet: &Packet, vertex: usize, p: Vec3) -> Vectors<S> {
-    let [x, y, z] = &packet.vertex[vertex];
+fn from<S: Simd>(simd: S, [x, y, z]: &[[f32; 8]; 3], p: Vec3) -> Vectors<S> {
     [
         f32x8::simd_from(simd, *x) - f32x8::splat(simd, p.x),
         f32x8::simd_from(simd, *y) - f32x8::splat(simd, p.y),
@@ -329,7 +341,7 @@ fn to_triangle_squared([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     }
 }
 
-pub(super) fn to_segment_squared(a: DVec3, b: DVec3, p: DVec3) -> f64 {
+fn to_segment_squared(a: DVec3, b: DVec3, p: DVec3) -> f64 {
     let (along, from) = (b - a, p - a);
     let length = along.length_squared();
     let t = if length > 0.0 { (along.dot(from) / length).clamp(0.0, 1.0) } else { 0.0 };

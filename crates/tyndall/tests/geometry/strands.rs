@@ -29,7 +29,7 @@ fn of(curves: Curves, transform: &Transform) -> Geometry {
 }
 
 /// Place and radius, and their derivatives, of a Bézier curve.
-fn at(bezier: &[glam::DVec4; 4], w: f64) -> (glam::DVec4, glam::DVec4) {
+pub(super) fn at(bezier: &[glam::DVec4; 4], w: f64) -> (glam::DVec4, glam::DVec4) {
     let [a, b, c, d] = *bezier;
     let v = 1.0 - w;
     let p = a * v.powi(3) + b * (3.0 * w * v * v) + c * (3.0 * w * w * v) + d * w.powi(3);

@@ -22,12 +22,14 @@ pub mod lobes;
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
+use glam::{DVec2, DVec3};
+
 use super::{BsdfSample, ScatterKind};
 use crate::{
     math::{Vec2, Vec3},
     spectrum::Lanes,
 };
-use lobes::{Entry, azimuthal, exit_azimuth, longitudinal, sample_azimuthal, sample_longitudinal, shares};
+use lobes::{Entry, Widths, exit_azimuth, sample_longitudinal, shares};
 
 /// The lowest roughness: below it lobes are sharper than single precision can tell directions apart.
 const SMOOTHEST: f32 = 0.01;
@@ -41,12 +43,7 @@ pub struct Hair {
     pub eta: f32,
     /// Absorption [1/radius].
     pub sigma_a: Lanes,
-    /// Longitudinal variance of R \[1\]; TT has a quarter, the others four times as much.
-    variance: f32,
-    /// Scale of the logistic lobes [rad].
-    scale: f32,
-    /// Tilt of the scales [rad].
-    alpha: f32,
+    widths: Widths,
 }
 
 /// The part of [`Hair::lobes`] for one pair of directions.
@@ -73,7 +70,7 @@ impl Hair {
         let deviation = 0.726 * m + 0.812 * m * m + 3.7 * m.powi(20);
         let scale = (PI / 8.0).sqrt() * (0.265 * n + 1.194 * n * n + 5.372 * n.powi(22));
         let h = h.clamp(-1.0, 1.0);
-        Self { h, eta, sigma_a, variance: (deviation * deviation) as f32, scale: scale as f32, alpha }
+        Self { h, eta, sigma_a, widths: Widths::new((deviation * deviation) as f32, scale as f32, alpha.into()) }
     }
 
     /// The absorption [1/radius] that makes a bundle of fibres look of this colour, in [0, 1] (Chiang et al. 2016, eq. 9).
@@ -82,17 +79,6 @@ impl Hair {
         let fit = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
         // Black would absorb without end.
         reflectance.map(|r| (r.clamp(1e-4, 1.0).ln() / fit).powi(2))
-    }
-
-    fn variance(&self, p: usize) -> f64 {
-        f64::from(self.variance) * [1.0, 0.25, 4.0, 4.0][p]
-    }
-
-    /// The inclination that lobe p sees: scales tilt R by −2α, TT by α, TRT by 4α.
-    fn tilted(&self, p: usize, [sin, cos]: [f64; 2]) -> [f64; 2] {
-        let (s, c) = (f64::from(self.alpha) * [-2.0, 1.0, 4.0, 0.0][p]).sin_cos();
-        // Beyond the axis it is the other side, from where light goes just as far round.
-        [sin * c + cos * s, (cos * c - sin * s).abs()]
     }
 
     fn entry(&self, theta_o: [f64; 2]) -> Entry {
@@ -108,14 +94,14 @@ impl Hair {
 
     fn densities(&self, entry: &Entry, wo: Vec3, wi: Vec3) -> [f64; 4] {
         let (theta_o, theta_i) = (inclination(wo), inclination(wi));
-        let phi = azimuth(wi) - azimuth(wo);
+        let phi = turn(wo, wi);
         let [gamma_o, gamma_t] = entry.gamma;
         std::array::from_fn(|p| {
             let round = match p {
                 3 => 0.5 * FRAC_1_PI,
-                _ => azimuthal(f64::from(self.scale), phi, exit_azimuth(p, gamma_o, gamma_t)),
+                _ => self.widths.azimuthal(phi - exit_azimuth(p, gamma_o, gamma_t)),
             };
-            longitudinal(self.variance(p), theta_i, self.tilted(p, theta_o)) * round
+            self.widths.longitudinal(p, theta_i, theta_o) * round
         })
     }
 
@@ -143,17 +129,18 @@ impl Hair {
         // What is left of the number is as random as before.
         let again = if odds[p] > 0.0 { (rest / odds[p]).clamp(0.0, 1.0 - f64::EPSILON) } else { 0.0 };
 
-        let tilted = self.tilted(p, theta_o);
-        let sin_i = sample_longitudinal(self.variance(p), tilted, 1.0 - f64::from(u.x), f64::from(u.y));
+        let tilted = self.widths.tilted(p, theta_o);
+        let sin_i = sample_longitudinal(self.widths.variance(p), tilted, 1.0 - f64::from(u.x), f64::from(u.y));
         let cos_i = (1.0 - sin_i * sin_i).max(0.0).sqrt();
         let round = if p == 3 {
             2.0 * PI * again
         } else {
             let [gamma_o, gamma_t] = entry.gamma;
-            sample_azimuthal(f64::from(self.scale), exit_azimuth(p, gamma_o, gamma_t), again)
+            self.widths.sample_azimuthal(exit_azimuth(p, gamma_o, gamma_t), again)
         };
-        let (sin_phi, cos_phi) = (azimuth(wo) + round).sin_cos();
-        let wi = glam::DVec3::new(sin_i, cos_i * cos_phi, cos_i * sin_phi).normalize().as_vec3();
+        let around =
+            DVec2::new(wo.y.into(), wo.z.into()).normalize_or(DVec2::X).rotate(DVec2::from_angle(round)) * cos_i;
+        let wi = DVec3::new(sin_i, around.x, around.y).normalize().as_vec3();
 
         let density = self.densities(&entry, wo, wi);
         let pdf = (0..4).map(|p| odds[p] * density[p]).sum::<f64>();
@@ -170,12 +157,13 @@ impl Hair {
 /// `[sin θ, cos θ]`, each to its own precision.
 fn inclination(w: Vec3) -> [f64; 2] {
     let w = w.as_dvec3().normalize_or_zero();
-    [w.x, w.y.hypot(w.z)]
+    [w.x, (w.y * w.y + w.z * w.z).sqrt()]
 }
 
-/// φ [rad].
-fn azimuth(w: Vec3) -> f64 {
-    f64::from(w.z).atan2(f64::from(w.y))
+/// By how much the azimuth of one direction is beyond that of another [rad].
+fn turn(from: Vec3, to: Vec3) -> f64 {
+    let [from, to] = [from, to].map(|w| DVec2::new(w.y.into(), w.z.into()));
+    from.perp_dot(to).atan2(from.dot(to))
 }
 
 /// How often each lobe is drawn \[1\]: by the mean of its lanes.

@@ -34,6 +34,11 @@ pub(in crate::shape) fn between(
                     }
                 }
             }
+            Content::Bundles { first, count } => {
+                for bundle in &tree.bundles[first..first + count] {
+                    bundle.filled().for_each(|lane| other(&bundle.primitive(lane)));
+                }
+            }
             Content::Others { first, count } => tree.others[first..first + count].iter().for_each(&mut *other),
         }
     }

@@ -14,11 +14,15 @@ use obvhs::{
 use rayon::prelude::*;
 
 use super::{
-    Child, Content, Node, Packet, Primitive, Tree, TriangleId,
+    Bundle, Child, Content, Node, Packet, Primitive, Tree, TriangleId,
+    bundle::Sheath,
     collapse::{Leaves, Plan, Step, bounds, leaf_entries},
     divide::divide,
 };
-use crate::math::{Bounds, Vec3};
+use crate::{
+    math::{Bounds, Vec3},
+    shape::curve::Piece,
+};
 
 /// A tree over more entries than this is built in clusters.
 const WHOLE: usize = 1 << 18;
@@ -36,6 +40,8 @@ const SEARCH: usize = 14;
 #[derive(Debug, Clone, Copy)]
 pub(in crate::shape) enum Entry {
     Triangle(TriangleId, [Vec3; 3]),
+    /// A piece of a strand of an object.
+    Piece(u32, Piece, Sheath),
     Other(Primitive, Bounds),
 }
 
@@ -43,6 +49,7 @@ impl Entry {
     pub(super) fn bounds(&self) -> Bounds {
         match *self {
             Self::Triangle(_, vertices) => Bounds::of(vertices),
+            Self::Piece(_, _, sheath) => sheath.bounds(),
             Self::Other(_, bounds) => bounds,
         }
     }
@@ -109,6 +116,7 @@ fn join(clusters: Vec<Cluster>) -> Tree {
         clusters.into_par_iter().zip(&places).map(|(cluster, places)| cluster.emit(places)).collect();
     tree.nodes.reserve_exact(below.iter().map(|(tree, _)| tree.nodes.len()).sum());
     tree.packets.reserve_exact(below.iter().map(|(tree, _)| tree.packets.len()).sum());
+    tree.bundles.reserve_exact(below.iter().map(|(tree, _)| tree.bundles.len()).sum());
     tree.others.reserve_exact(below.iter().map(|(tree, _)| tree.others.len()).sum());
     for ((part, roots), places) in below.into_iter().zip(places) {
         let roots = tree.take(&part, &roots);
@@ -189,19 +197,22 @@ fn is_heap(pairs: &Bvh2) -> bool {
 impl Tree {
     /// Nothing yet, for what is inside of these bounds.
     fn empty(bounds: Bounds) -> Self {
-        Self { nodes: Vec::new(), packets: Vec::new(), others: Vec::new(), root: None, bounds }
+        Self { nodes: Vec::new(), packets: Vec::new(), bundles: Vec::new(), others: Vec::new(), root: None, bounds }
     }
 
     /// Copies another tree to the end of this one; says what its roots are here.
     fn take(&mut self, other: &Self, roots: &[Child]) -> Vec<Child> {
-        let (nodes, packets, others) = (self.nodes.len(), self.packets.len(), self.others.len());
+        let (nodes, packets) = (self.nodes.len(), self.packets.len());
+        let (bundles, others) = (self.bundles.len(), self.others.len());
         let moved = |child: Child| match child.content() {
             Content::Node(index) => Child::node(nodes + index),
             Content::Packets { first, count } => Child::packets(packets + first, count),
+            Content::Bundles { first, count } => Child::bundles(bundles + first, count),
             Content::Others { first, count } => Child::others(others + first, count),
         };
         self.nodes.extend(other.nodes.iter().map(|node| Node { child: node.child.map(moved), ..*node }));
         self.packets.extend_from_slice(&other.packets);
+        self.bundles.extend_from_slice(&other.bundles);
         self.others.extend_from_slice(&other.others);
         roots.iter().map(|&root| moved(root)).collect()
     }
@@ -209,31 +220,41 @@ impl Tree {
 
 impl Leaves for &[Entry] {
     fn step(&self, entries: impl Iterator<Item = usize>, area: f32) -> Step {
-        let (triangles, others) = entries.fold((0, 0), |(triangles, others), entry| match self[entry] {
-            Entry::Triangle(..) => (triangles + 1, others),
-            Entry::Other(..) => (triangles, others + 1),
+        let counts = entries.fold([0; 3], |[triangles, pieces, others], entry| match self[entry] {
+            Entry::Triangle(..) => [triangles + 1, pieces, others],
+            Entry::Piece(..) => [triangles, pieces + 1, others],
+            Entry::Other(..) => [triangles, pieces, others + 1],
         });
-        Step::leaf(triangles, others, area)
+        Step::leaf(counts, area)
     }
 }
 
 impl Leaves for &[Cluster<'_>] {
     fn step(&self, mut entries: impl Iterator<Item = usize>, area: f32) -> Step {
-        entries.next().map_or(Step::leaf(0, 0, area), |cluster| self[cluster].plan.whole())
+        entries.next().map_or(Step::leaf([0; 3], area), |cluster| self[cluster].plan.whole())
     }
 }
 
-/// Writes the entries of a leaf, which are all triangles or all something else.
+/// Writes the entries of a leaf, which are all triangles, all pieces of strands, or all something else.
 fn write_leaf(tree: &mut Tree, entries: &[Entry], leaf: &[usize]) -> Child {
     let first = tree.others.len();
-    let mut triangles = Vec::with_capacity(leaf.len());
+    let (mut triangles, mut pieces) = (Vec::with_capacity(leaf.len()), Vec::new());
     for &entry in leaf {
         match entries[entry] {
             Entry::Triangle(id, vertices) => triangles.push((id, vertices)),
+            Entry::Piece(object, piece, sheath) => pieces.push((object, piece, sheath)),
             Entry::Other(primitive, _) => tree.others.push(primitive),
         }
     }
-    if triangles.is_empty() { Child::others(first, leaf.len()) } else { write_packets(tree, &triangles) }
+    if !triangles.is_empty() {
+        write_packets(tree, &triangles)
+    } else if !pieces.is_empty() {
+        let child = Child::bundles(tree.bundles.len(), pieces.len().div_ceil(8));
+        tree.bundles.extend(pieces.chunks(8).map(Bundle::new));
+        child
+    } else {
+        Child::others(first, leaf.len())
+    }
 }
 
 fn write_packets(tree: &mut Tree, triangles: &[(TriangleId, [Vec3; 3])]) -> Child {
@@ -284,7 +305,7 @@ mod tests {
                     }
                 }
             }
-            Content::Others { .. } => panic!("there are only triangles"),
+            Content::Bundles { .. } | Content::Others { .. } => panic!("there are only triangles"),
         }
     }
 

@@ -6,9 +6,10 @@ use obvhs::bvh2::{Bvh2, node::Bvh2Node};
 use super::{Child, Node, Tree};
 use crate::math::Bounds;
 
-/// The cost of meeting a node, of a packet of triangles, and of another primitive. Only ratios matter.
+/// The cost of meeting a node, of a packet of triangles, of a bundle of strands, and of another primitive. Only ratios matter.
 const NODE_COST: f32 = 0.75;
 const PACKET_COST: f32 = 1.0;
+const BUNDLE_COST: f32 = 1.0;
 const OTHER_COST: f32 = 0.5;
 
 /// What the leaves of a binary tree hold, by the number of their entry.
@@ -30,17 +31,17 @@ pub(super) struct Step {
     cost: [f32; 7],
     /// `left[i]`: how many of `i + 2` children go to the left half.
     left: [u8; 7],
-    triangles: u32,
-    others: u32,
+    /// Triangles, pieces of strands, and other primitives.
+    counts: [u32; 3],
     is_leaf: bool,
 }
 
 impl Step {
-    const NONE: Self = Self { cost: [0.0; 7], left: [0; 7], triangles: 0, others: 0, is_leaf: true };
+    const NONE: Self = Self { cost: [0.0; 7], left: [0; 7], counts: [0; 3], is_leaf: true };
 
-    /// A leaf of so many triangles or other primitives.
-    pub(super) fn leaf(triangles: u32, others: u32, area: f32) -> Self {
-        let leaf = Self { triangles, others, ..Self::NONE };
+    /// A leaf of so many triangles, pieces of strands, or other primitives.
+    pub(super) fn leaf(counts: [u32; 3], area: f32) -> Self {
+        let leaf = Self { counts, ..Self::NONE };
         Self { cost: [leaf.leaf_cost(area); 7], ..leaf }
     }
 
@@ -52,12 +53,13 @@ impl Step {
     }
 
     fn leaf_cost(&self, area: f32) -> f32 {
-        if self.others == 0 && self.triangles as usize <= Child::MAX_TRIANGLES {
-            area * PACKET_COST * self.triangles.div_ceil(8) as f32
-        } else if self.triangles == 0 && self.others as usize <= Child::MAX_OTHERS {
-            area * OTHER_COST * self.others as f32
-        } else {
-            f32::INFINITY
+        match self.counts {
+            [triangles, 0, 0] if triangles as usize <= Child::MAX_TRIANGLES => {
+                area * PACKET_COST * triangles.div_ceil(8) as f32
+            }
+            [0, pieces, 0] if pieces as usize <= Child::MAX_PIECES => area * BUNDLE_COST * pieces.div_ceil(8) as f32,
+            [0, 0, others] if others as usize <= Child::MAX_OTHERS => area * OTHER_COST * others as f32,
+            _ => f32::INFINITY,
         }
     }
 }
@@ -78,8 +80,7 @@ impl Plan {
         }
         let mut step = Step::NONE;
         let (left, right) = (&self.steps[node.first_index as usize], &self.steps[node.first_index as usize + 1]);
-        step.triangles = left.triangles + right.triangles;
-        step.others = left.others + right.others;
+        step.counts = [0, 1, 2].map(|kind| left.counts[kind] + right.counts[kind]);
         for children in 2..=8 {
             let (cost, k) = Step::share(left, right, children);
             step.left[children - 2] = k;
@@ -102,7 +103,7 @@ impl Plan {
 
     /// The step of the root as a leaf of the plan for a tree above, where it shares a leaf with nobody.
     pub(super) fn whole(&self) -> Step {
-        Step { triangles: 1, others: 1, ..self.steps[0] }
+        Step { counts: [1; 3], ..self.steps[0] }
     }
 
     /// The nodes of the binary tree that become the children of a wide node when `index` is given `budget` of them.

@@ -1,4 +1,5 @@
-//! The bounding volume hierarchy: 8-wide nodes, triangles in packets of 8, other primitives as general leaves.
+//! The bounding volume hierarchy: 8-wide nodes, triangles in packets of 8, pieces of strands in bundles of 8 ([`bundle`]),
+//! other primitives as general leaves.
 //!
 //! # Why no ray slips through a closed mesh
 //!
@@ -17,6 +18,7 @@
 
 pub(super) mod between;
 pub(super) mod build;
+pub(super) mod bundle;
 mod collapse;
 mod divide;
 mod prefetch;
@@ -64,9 +66,9 @@ impl Node {
     }
 }
 
-/// What is inside a box: a node, one or two packets of triangles, or a run of other primitives.
+/// What is inside a box: a node, one or two packets of triangles or bundles of strands, or a run of other primitives.
 ///
-/// Bits 31–30 are the kind. For packets bit 29 says whether there are two; for a run bits 29–27 are its length less
+/// Bits 31–30 are the kind. For packets and bundles bit 29 says whether there are two; for a run bits 29–27 are its length less
 /// one. The rest is an index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Child(pub(super) u32);
@@ -76,11 +78,13 @@ pub(super) struct Child(pub(super) u32);
 pub(super) enum Content {
     Node(usize),
     Packets { first: usize, count: usize },
+    Bundles { first: usize, count: usize },
     Others { first: usize, count: usize },
 }
 
 impl Child {
     const MAX_TRIANGLES: usize = 16;
+    const MAX_PIECES: usize = 16;
     const MAX_OTHERS: usize = 8;
 
     fn node(index: usize) -> Self {
@@ -89,6 +93,10 @@ impl Child {
 
     fn packets(first: usize, count: usize) -> Self {
         Self(1 << 30 | (count as u32 - 1) << 29 | first as u32)
+    }
+
+    fn bundles(first: usize, count: usize) -> Self {
+        Self(3 << 30 | (count as u32 - 1) << 29 | first as u32)
     }
 
     fn others(first: usize, count: usize) -> Self {
@@ -101,6 +109,7 @@ impl Child {
         match bits >> 30 {
             0 => Content::Node(bits as usize),
             1 => Content::Packets { first: (bits & 0x1fff_ffff) as usize, count: 1 + (bits >> 29 & 1) as usize },
+            3 => Content::Bundles { first: (bits & 0x1fff_ffff) as usize, count: 1 + (bits >> 29 & 1) as usize },
             _ => Content::Others { first: (bits & 0x07ff_ffff) as usize, count: 1 + (bits >> 27 & 7) as usize },
         }
     }
@@ -137,6 +146,19 @@ pub(super) struct TriangleId {
     pub(super) prim: u32,
 }
 
+/// Eight pieces of strands in their sheaths, end by end and axis by axis. Lanes without a piece repeat the last one, in a
+/// sheath of radius −∞.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Bundle {
+    /// `ends[i][axis][lane]` [length].
+    pub(super) ends: [[[f32; 8]; 3]; 2],
+    /// Of the sheath [length].
+    pub(super) radius: [f32; 8],
+    pub(super) objects: [u32; 8],
+    pub(super) pieces: [Piece; 8],
+}
+
 /// A leaf that is not a triangle.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Primitive {
@@ -155,6 +177,7 @@ pub(super) enum Primitive {
 pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) packets: Vec<Packet>,
+    pub(super) bundles: Vec<Bundle>,
     pub(super) others: Vec<Primitive>,
     /// `None` when there is nothing.
     pub(super) root: Option<Child>,

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 
-use super::{Child, Content, NONE, Node, Primitive, Tree, prefetch::prefetch, triangle::Shear};
+use super::{Child, Content, NONE, Node, Primitive, Tree, bundle::Sight, prefetch::prefetch, triangle::Shear};
 use crate::math::{Ray, Vec2, Vec3};
 
 /// Relative error allowed for the distances to a box's planes: see the head of [`super`].
@@ -130,7 +130,7 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
 ) {
     let Some(mut child) = tree.root else { return };
     let slabs = Slabs::new(ray);
-    let mut shear = None;
+    let (mut shear, mut sight) = (None, None);
     let mut stack = Stack::new();
     loop {
         match child.content() {
@@ -151,6 +151,19 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
                 };
                 for packet in first..first + count {
                     test_packet(simd, tree, packet, &shear, nearest);
+                }
+            }
+            Content::Bundles { first, count } => {
+                let sight = match sight {
+                    Some(sight) => sight,
+                    None => *sight.insert(Sight::new(ray)),
+                };
+                for bundle in &tree.bundles[first..first + count] {
+                    let mut mask = sight.candidates(simd, bundle, nearest.t);
+                    while mask != 0 {
+                        visit(&bundle.primitive((mask.trailing_zeros() & 7) as usize), nearest);
+                        mask &= mask - 1;
+                    }
                 }
             }
             Content::Others { first, count } => {
@@ -176,6 +189,7 @@ fn prefetch_children(tree: &Tree, node: &Node, mut mask: u32) {
         match node.child[(mask.trailing_zeros() & 7) as usize].content() {
             Content::Node(index) => prefetch(&tree.nodes[index]),
             Content::Packets { first, .. } => prefetch(&tree.packets[first].vertex),
+            Content::Bundles { first, .. } => prefetch(&tree.bundles[first].ends),
             Content::Others { first, .. } => prefetch(&tree.others[first]),
         }
         mask &= mask - 1;

@@ -24,7 +24,7 @@ pub use basis::Basis;
 
 use super::{
     ShapeError,
-    clearance::to_segment_squared,
+    bvh::bundle::Sheath,
     derivatives::Local,
     instance::{Placement, outward},
     interaction::Point,
@@ -33,11 +33,13 @@ use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
 use capsule::Capsule;
 use segment::{Bezier, Line};
 
-/// Pieces of a segment are cut at most so often.
-const MAX_CUTS: u32 = 4;
+/// A segment is cut in halves at most so often, and these again, if their boxes have less than [`WORTHWHILE`] of its surface.
+const CUTS: u32 = 2;
+const WORTHWHILE: f32 = 0.9;
 
-/// A piece is cut if its halves have less than this of its surface.
-const WORTHWHILE: f32 = 0.7;
+/// Pieces are cut more often, up to so often, whose bulge is more than this share of their radius.
+const MAX_CUTS: u32 = 4;
+const BENT: f64 = 0.5;
 
 /// What is around a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -185,11 +187,11 @@ impl Curves {
     }
 
     /// What of the strands goes into the tree.
-    pub(super) fn pieces(&self) -> impl Iterator<Item = (Piece, Bounds)> {
+    pub(super) fn pieces(&self) -> impl Iterator<Item = (Piece, Sheath)> {
         (0..self.segments.len() as u32).flat_map(|segment| {
             let bezier = self.segments[segment as usize].bezier();
             let mut pieces = Vec::new();
-            cut(&bezier, [0.0, 1.0], MAX_CUTS, &mut |part, bounds| pieces.push((Piece { segment, part }, bounds)));
+            cut(&bezier, [0.0, 1.0], 0, &mut |part, sheath| pieces.push((Piece { segment, part }, sheath)));
             pieces
         })
     }
@@ -206,10 +208,10 @@ impl Curves {
         let [distance, w] = match self.style {
             Style::Round => match self.capsule(piece.segment) {
                 Some(capsule) => capsule.enter(&line),
-                None => line.enter(&bezier, part),
+                None => line.see(&bezier).enter(part),
             },
-            Style::Flat => line.cross(&bezier, part, |_| 1.0),
-            Style::Ribbon => line.cross(&bezier, part, |w| self.normal(piece.segment, w).dot(line.dir).abs()),
+            Style::Flat => line.see(&bezier).cross(part, |_| 1.0),
+            Style::Ribbon => line.see(&bezier).cross(part, |w| self.normal(piece.segment, w).dot(line.dir).abs()),
         }?;
         let t = (distance / length) as f32;
         (t > 0.0 && t < t_max).then_some((t, Vec2::new(w as f32, 0.0)))
@@ -249,7 +251,7 @@ impl Curves {
         let w = f64::from(at.x);
         let surface = match capsule {
             Some(capsule) => capsule.meet(&line),
-            None => (self.style == Style::Round).then(|| line.refined(&bezier, w)),
+            None => (self.style == Style::Round).then(|| line.see(&bezier).refined(w)),
         };
         let w = surface.map_or(w, |[_, w]| w);
         let jet = bezier.at(w);
@@ -291,14 +293,6 @@ impl Curves {
         let across = n.cross(along).normalize_or_zero() * (2.0 * jet.p.w);
         Local { dp: [along, across], dn: [DVec3::ZERO; 2] }
     }
-
-    /// A lower bound on the distance from `p` to a piece [length]: to its chord, less its bulge and its radius.
-    pub(super) fn clearance(&self, piece: &Piece, p: DVec3) -> f64 {
-        let part = self.segments[piece.segment as usize].bezier().part(piece.part.map(f64::from));
-        let [a, b] = [part.0[0].truncate(), part.0[3].truncate()];
-        let size = a.abs().max_element().max(b.abs().max_element()).max(p.abs().max_element());
-        to_segment_squared(a, b, p).sqrt() - (part.bulge() + part.reach()) * (1.0 + 1e-6) - 1e-14 * size
-    }
 }
 
 /// The line of a ray, and the length of the ray's direction.
@@ -318,16 +312,30 @@ fn around(bezier: &Bezier) -> Bounds {
     outward(min - reach, max + reach)
 }
 
-/// Cuts a part of a segment into halves while that is worth it.
-fn cut(bezier: &Bezier, [from, to]: [f32; 2], cuts: u32, found: &mut impl FnMut([f32; 2], Bounds)) {
-    let whole = around(&bezier.part([from, to].map(f64::from)));
+/// What holds a part of a segment: all within its chord's distance from the curve and the greatest radius, and a little more for
+/// what it shares with its neighbours and for the rounding of its ends.
+fn sheath(bezier: &Bezier, part: [f32; 2]) -> Sheath {
+    let overlap = 3.0 * bezier.leg() * bezier.overlap();
+    let part = bezier.part(part.map(f64::from));
+    let ends = [part.0[0], part.0[3]].map(DVec4::truncate);
+    let rounding = ends.map(|p| (p.as_vec3().as_dvec3() - p).length());
+    let radius = (part.reach() + part.bulge()) * (1.0 + 1e-6) + overlap + rounding[0].max(rounding[1]);
+    Sheath { ends: ends.map(DVec3::as_vec3), radius: (radius as f32).next_up() }
+}
+
+/// Cuts a part of a segment into halves while that is worth it: `cuts` are those behind it.
+fn cut(bezier: &Bezier, part: [f32; 2], cuts: u32, found: &mut impl FnMut([f32; 2], Sheath)) {
+    let whole = sheath(bezier, part);
+    let [from, to] = part;
     let middle = 0.5 * (from + to);
     let halves = [[from, middle], [middle, to]];
-    let area = |part: [f32; 2]| around(&bezier.part(part.map(f64::from))).half_area();
-    if cuts == 0 || area(halves[0]) + area(halves[1]) > WORTHWHILE * whole.half_area() {
-        return found([from, to], whole);
+    let area = |part: [f32; 2]| sheath(bezier, part).bounds().half_area();
+    let bulge = bezier.bulge() * f64::from(to - from).powi(2);
+    let is_large = || area(halves[0]) + area(halves[1]) < WORTHWHILE * whole.bounds().half_area();
+    if !(cuts < MAX_CUTS && bulge > BENT * bezier.reach() || cuts < CUTS && is_large()) {
+        return found(part, whole);
     }
     for half in halves {
-        cut(bezier, half, cuts - 1, found);
+        cut(bezier, half, cuts + 1, found);
     }
 }

@@ -13,7 +13,7 @@
 //!
 //! Across the ray, the curve is nearest where `e(w)·e′(w) = 0`; it is met if it is no further than its half-width there.
 
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec4Swizzles as _};
 
 /// Steps of `w` below this end the search.
 const SETTLED: f64 = 1e-9;
@@ -57,13 +57,6 @@ impl Bezier {
         }
     }
 
-    /// Only where it is.
-    #[inline]
-    fn place(&self, w: f64) -> DVec3 {
-        let ([a, b, c, d], v) = (self.0.map(DVec4::truncate), 1.0 - w);
-        (a * v + b * (3.0 * w)) * (v * v) + (c * (3.0 * v) + d * w) * (w * w)
-    }
-
     /// The part between two parameters.
     pub(super) fn part(&self, [from, to]: [f64; 2]) -> Self {
         let blossom = |x: f64, y: f64, z: f64| {
@@ -88,10 +81,16 @@ impl Bezier {
         (OVERLAP + angle * (1.0 + self.reach() / leg)).min(SHORTEST)
     }
 
+    /// The greatest distance from one control point to the next, also in radius: a third of the greatest speed.
+    pub(super) fn leg(&self) -> f64 {
+        let [a, b, c, d] = self.0;
+        (b - a).length().max((c - b).length()).max((d - c).length())
+    }
+
     /// How far the curve is from its chord at most: an eighth of the greatest second derivative.
     pub(super) fn bulge(&self) -> f64 {
         let [a, b, c, d] = self.0.map(DVec4::truncate);
-        0.75 * (a - b - b + c).length().max((b - c - c + d).length())
+        0.75 * (a - b - b + c).length_squared().max((b - c - c + d).length_squared()).sqrt()
     }
 }
 
@@ -105,6 +104,13 @@ fn nearer<const N: usize>(found: [Option<Meeting>; N]) -> Option<Meeting> {
 pub(super) struct Line {
     pub(super) origin: DVec3,
     pub(super) dir: DVec3,
+}
+
+/// A curve as a ray sees it: across the ray on two axes, along it, and the radius, each a polynomial of the parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen<'a> {
+    curve: &'a Bezier,
+    powers: [DVec4; 4],
 }
 
 /// How near a ray comes to a chord: the distance, the parameter, and how long the chord is as the ray sees it.
@@ -126,44 +132,79 @@ impl Line {
         (from - self.dir * along, along)
     }
 
+    /// The curve as this ray sees it.
+    #[inline]
+    pub(super) fn see<'a>(&self, curve: &'a Bezier) -> Seen<'a> {
+        let (x, y) = self.dir.any_orthonormal_pair();
+        let [a, b, c, d] = curve.0.map(|p| {
+            let from = p.truncate() - self.origin;
+            DVec4::new(from.dot(x), from.dot(y), from.dot(self.dir), p.w)
+        });
+        Seen { curve, powers: [a, (b - a) * 3.0, (a - b - b + c) * 3.0, d - a + (b - c) * 3.0] }
+    }
+}
+
+impl Seen<'_> {
+    #[inline]
+    fn at(&self, w: f64) -> Jet {
+        let [a, b, c, d] = self.powers;
+        Jet { p: ((d * w + c) * w + b) * w + a, d: (d * (3.0 * w) + c * 2.0) * w + b, dd: d * (6.0 * w) + c * 2.0 }
+    }
+
     /// The nearest entrance into the tube around a part of a curve, if it is ahead of the origin.
-    pub(super) fn enter(&self, curve: &Bezier, part: [f64; 2]) -> Option<Meeting> {
-        let Approach { distance, w, projected } = self.approach(curve, part);
-        let (reach, bulge) = (curve.reach(), curve.bulge() * (part[1] - part[0]).powi(2));
-        if distance > (reach + bulge) * (1.0 + OVERLAP) {
+    pub(super) fn enter(&self, part: [f64; 2]) -> Option<Meeting> {
+        self.enter_within(part, self.curve.reach(), self.curve.bulge())
+    }
+
+    /// The same; `reach` and `bulge` are those of the whole curve.
+    fn enter_within(&self, part: [f64; 2], reach: f64, bulge: f64) -> Option<Meeting> {
+        let [from, to] = part;
+        let Approach { distance, w, projected } = self.approach(part);
+        let own_bulge = bulge * (to - from) * (to - from);
+        if distance > (reach + own_bulge) * (1.0 + OVERLAP) {
             return None;
         }
-        let [from, to] = part;
-        if bulge > STRAIGHT * reach && to - from > SHORTEST {
+        if own_bulge > STRAIGHT * reach && to - from > SHORTEST {
             let middle = 0.5 * (from + to);
-            return nearer([[from, middle], [middle, to]].map(|half| self.enter(curve, half)));
+            return nearer([[from, middle], [middle, to]].map(|half| self.enter_within(half, reach, bulge)));
         }
         if projected > reach {
-            return self.search(curve, part, w); // nearly a cone, which is entered once
+            return self.search(part, w); // nearly a cone, which is entered once
         }
-        nearer([from, w, to].map(|start| self.search(curve, part, start)))
+        nearer([from, w, to].map(|start| self.search(part, start)))
     }
 
     /// Where the chord of a part is nearest.
     #[inline]
-    fn approach(&self, curve: &Bezier, [from, to]: [f64; 2]) -> Approach {
-        let [a, b] = [from, to].map(|w| self.across(curve.place(w)).0);
+    fn approach(&self, [from, to]: [f64; 2]) -> Approach {
+        let [k0, k1, k2, k3] = self.powers.map(DVec4::xy);
+        let [a, b] = [from, to].map(|w| ((k3 * w + k2) * w + k1) * w + k0);
         let chord = b - a;
         let square = chord.length_squared();
         let share = if square > 0.0 { (-a.dot(chord) / square).clamp(0.0, 1.0) } else { 0.5 };
         Approach { distance: (a + chord * share).length(), w: from + share * (to - from), projected: square.sqrt() }
     }
 
+    /// Whether a parameter is on the part or so little beyond it that a neighbour may leave it out.
+    #[inline]
+    fn is_on(&self, [from, to]: [f64; 2], w: f64) -> bool {
+        if w >= from && w <= to {
+            return true;
+        }
+        let overlap = self.curve.overlap();
+        w >= from - overlap && w <= to + overlap
+    }
+
     /// From one parameter of the part.
-    fn search(&self, curve: &Bezier, [from, to]: [f64; 2], start: f64) -> Option<Meeting> {
-        let (width, overlap) = (to - from, curve.overlap());
+    fn search(&self, part: [f64; 2], start: f64) -> Option<Meeting> {
+        let [from, to] = part;
+        let width = to - from;
         let mut w = start;
         let mut last: Option<[f64; 2]> = None;
         for count in 0..MAX_STEPS {
-            let (distance, step, is_met) = self.meet_cone(&curve.at(w))?;
+            let (distance, step, is_met) = self.meet_cone(w)?;
             if step.abs() < SETTLED {
-                let inside = w >= from - overlap && w <= to + overlap;
-                return (is_met && inside && distance > 0.0).then_some([distance, w]);
+                return (is_met && distance > 0.0 && self.is_on(part, w)).then_some([distance, w]);
             }
             let step = step.clamp(-0.5 * width, 0.5 * width);
             let next = match last {
@@ -188,10 +229,10 @@ impl Line {
     /// With `c` from the ray's nearest place to the curve, `v` its velocity, `τ = (s d − c)·v/v²` and the radius `r + r′τ`:
     /// `|s d − c|² − τ² v² = (r + r′τ)²`.
     #[inline]
-    fn meet_cone(&self, jet: &Jet) -> Option<(f64, f64, bool)> {
-        let (c, along) = self.across(jet.p.truncate());
-        let (v, r, dr) = (jet.d.truncate(), jet.p.w, jet.d.w);
-        let (vv, vd, cv) = (v.length_squared(), v.dot(self.dir), c.dot(v));
+    fn meet_cone(&self, w: f64) -> Option<(f64, f64, bool)> {
+        let Jet { p, d: v, dd } = self.at(w);
+        let (along, r, vd, dr) = (p.z, p.w, v.z, v.w);
+        let (c, vv, cv) = (p.xy(), v.truncate().length_squared(), p.xy().dot(v.xy()));
         let k = 1.0 + dr * dr / vv;
         let qa = vv - k * vd * vd;
         let qb = vd * (k * cv - r * dr);
@@ -202,21 +243,20 @@ impl Line {
         let discriminant = qb * qb - qa * qc;
         let s = (-qb - discriminant.max(0.0).sqrt()) / qa;
         // The foot of the perpendicular moves faster than along a straight line where the curve bends towards the ray.
-        let bend = (self.dir * s - c).dot(jet.dd.truncate());
+        let bend = s * dd.z - c.dot(dd.xy());
         Some((along + s, (s * vd - cv) / (vv - bend).max(0.25 * vv), discriminant >= 0.0))
     }
 
     /// Where a ribbon that is turned to the ray is met. `half` is its half-width at a parameter, in units of the radius.
-    pub(super) fn cross(&self, curve: &Bezier, [from, to]: [f64; 2], half: impl Fn(f64) -> f64) -> Option<Meeting> {
-        let Approach { distance, mut w, .. } = self.approach(curve, [from, to]);
-        if distance > (curve.reach() + curve.bulge() * (to - from).powi(2)) * (1.0 + OVERLAP) {
+    pub(super) fn cross(&self, part: [f64; 2], half: impl Fn(f64) -> f64) -> Option<Meeting> {
+        let [from, to] = part;
+        let Approach { distance, mut w, .. } = self.approach(part);
+        if distance > (self.curve.reach() + self.curve.bulge() * (to - from).powi(2)) * (1.0 + OVERLAP) {
             return None;
         }
         for _ in 0..MAX_STEPS {
-            let jet = curve.at(w);
-            let (e, along) = self.across(jet.p.truncate());
-            let flat = |v: DVec4| v.truncate().reject_from_normalized(self.dir);
-            let (d, dd) = (flat(jet.d), flat(jet.dd));
+            let Jet { p, d, dd } = self.at(w);
+            let (e, along, d, dd) = (p.xy(), p.z, d.xy(), dd.xy());
             let slope = d.length_squared() + e.dot(dd);
             // Where the distance bends the wrong way: as if the curve were straight.
             let slope = if slope > 0.0 { slope } else { d.length_squared() };
@@ -225,9 +265,8 @@ impl Line {
                 return None;
             }
             if step.abs() < SETTLED {
-                let overlap = curve.overlap();
-                let inside = w >= from - overlap && w <= to + overlap;
-                return (inside && e.length() <= jet.p.w * half(w) && along > 0.0).then_some([along, w]);
+                let is_met = e.length() <= p.w * half(w) && along > 0.0 && self.is_on(part, w);
+                return is_met.then_some([along, w]);
             }
             w += step.clamp(from - to, to - from);
             if w < from - (to - from) || w > to + (to - from) {
@@ -238,11 +277,11 @@ impl Line {
     }
 
     /// The same meeting to all digits, from one that was rounded.
-    pub(super) fn refined(&self, curve: &Bezier, w: f64) -> Meeting {
+    pub(super) fn refined(&self, w: f64) -> Meeting {
         let mut w = w;
         let mut distance = 0.0;
         for _ in 0..8 {
-            let Some((at, step, _)) = self.meet_cone(&curve.at(w)) else { break };
+            let Some((at, step, _)) = self.meet_cone(w) else { break };
             distance = at;
             if step.abs() < f64::EPSILON || step.abs() > OVERLAP {
                 break;
