@@ -11,7 +11,7 @@ use crate::{
     material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Distances, Geometry, Hit, Interaction, ObjectId},
+    shape::{Distances, Geometry, Hit, Interaction, ObjectId, Shape},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -78,6 +78,8 @@ pub struct Scene {
 struct Facts {
     /// Whether any surface lets light pass unchanged, so that shadow rays have to walk.
     has_null_surfaces: bool,
+    /// By object: whether it lets all light pass, if that is all there is to know of what light can pass.
+    open: Option<Vec<bool>>,
     /// By medium: whether a straight line from inside it can reach a light.
     lit: Vec<bool>,
     /// By medium: a box that it does not reach out of.
@@ -156,6 +158,7 @@ impl Scene {
         self.facts = Facts {
             // A surface of a body may not be there.
             has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
+            open: self.open_surfaces(&objects).filter(|_| bodies.is_empty()),
             lit: media()
                 .zip(&extent)
                 .map(|(m, extent)| opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, materials, lights))
@@ -173,6 +176,28 @@ impl Scene {
         self.facts.distances = distances(&self);
         self.facts.around_camera = enclosure::around_camera(&self);
         self
+    }
+
+    /// By object whether it lets all light pass; `None` where some light is let pass otherwise: by holes, by surfaces that shine
+    /// too, or by those that a ray can meet twice.
+    fn open_surfaces(&self, objects: &[(ObjectId, &Object)]) -> Option<Vec<bool>> {
+        let mut open = vec![false; self.objects.len()];
+        for &(id, object) in objects {
+            let material = &self.materials[object.material.0 as usize];
+            let is_mesh = matches!(self.geometry.shape(id), Shape::Mesh(_));
+            if matches!(material, Material::Null) && object.emission == Emission::None && is_mesh {
+                open[id.0 as usize] = true;
+            } else if may_be_open(material, &self.materials) {
+                return None;
+            }
+        }
+        Some(open)
+    }
+
+    /// By object whether it lets all light pass, where that is all there is to know of what light can pass.
+    #[inline]
+    pub(crate) fn open(&self) -> Option<&[bool]> {
+        self.facts.open.as_deref()
     }
 
     /// The same world with a proxy in the place of its grains.

@@ -5,7 +5,7 @@ use crate::{
     math::{Ray, Vec3, rounding::gamma},
     medium::{Inside, Skin, Within},
     scene::Scene,
-    shape::offset_point,
+    shape::{Hit, Passed, offset_point},
     spectrum::{Lanes, Wavelengths},
     tally::Tally,
 };
@@ -31,6 +31,16 @@ pub fn transmittance(
             return None;
         }
         return Some(inside.coefficients().map_or(Lanes::ONE, |c| c.transmittance(t_max)));
+    }
+    if let Some(open) = scene.open() {
+        tally.shadow_rays += 1;
+        let mut passed = Passed::default();
+        if scene.geometry.occluded_but(&ray, t_max, open, &mut passed) {
+            return None;
+        }
+        if let Some(hits) = passed.in_order() {
+            return through(scene, &ray, t_max, hits, inside, wavelengths);
+        }
     }
     let mut transmittance = Lanes::ONE;
     let mut within = *within;
@@ -70,6 +80,40 @@ pub fn transmittance(
             return Some(transmittance);
         }
     }
+}
+
+/// The transmittance of a segment that meets these surfaces without a material. One that is within the error of another is
+/// passed with it, as by a ray that leaves there.
+fn through(
+    scene: &Scene,
+    ray: &Ray,
+    t_max: f32,
+    hits: impl Iterator<Item = Hit>,
+    mut inside: Inside,
+    wavelengths: &Wavelengths,
+) -> Option<Lanes> {
+    let mut transmittance = Lanes::ONE;
+    let (mut from, mut clear) = (0.0, 0.0);
+    for hit in hits {
+        if hit.t <= clear {
+            continue;
+        }
+        if let Some(coefficients) = inside.coefficients() {
+            transmittance *= coefficients.transmittance(hit.t - from);
+            if transmittance.is_zero() {
+                return None;
+            }
+        }
+        let surface = scene.geometry.interaction(ray, &hit);
+        if let Some(interface) = scene.object(&surface).interface {
+            inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
+        }
+        (from, clear) = (hit.t, hit.t * (1.0 + gamma(4)) + surface.thickness(ray.dir));
+    }
+    if let Some(coefficients) = inside.coefficients() {
+        transmittance *= coefficients.transmittance(t_max - from);
+    }
+    Some(transmittance)
 }
 
 /// What of the way from `origin` to a light no surface blocks \[1\], media left out of account: 1 or 0, but for surfaces

@@ -8,11 +8,12 @@ use super::{
     Curves, Cylinder, Disk, Interaction, Mesh, Patch, Sphere,
     bvh::{
         NONE, Primitive, Tree,
-        traverse::{Nearest, traverse},
+        traverse::{Met, Nearest, traverse},
     },
     curve::Piece,
     instance::Instance,
     interaction::Point,
+    passage::{Passed, Placed, Way},
     sphere,
 };
 use crate::math::{Bounds, Ray, Vec2, Vec3};
@@ -140,82 +141,87 @@ impl Geometry {
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
         let mut nearest = Nearest::before(t_max);
-        dispatch!(self.level, simd => self.search::<_, false>(simd, ray, &mut nearest));
-        nearest.found().then_some(Hit {
-            t: nearest.t,
-            object: ObjectId(nearest.object),
-            prim: nearest.prim,
-            uv: nearest.uv,
-            instance: nearest.instance,
-        })
+        dispatch!(self.level, simd => self.search::<_, _, false>(simd, ray, &mut nearest));
+        nearest.found().then(|| nearest.hit())
     }
 
     /// Whether there is any surface with `0 < t < t_max`.
     #[inline]
     pub fn occluded(&self, ray: &Ray, t_max: f32) -> bool {
         let mut nearest = Nearest::before(t_max);
-        dispatch!(self.level, simd => self.search::<_, true>(simd, ray, &mut nearest));
+        dispatch!(self.level, simd => self.search::<_, _, true>(simd, ray, &mut nearest));
         nearest.found()
     }
 
+    /// What there is on a segment whose `open` objects (by [`ObjectId`], all of them meshes) let light pass: whether another
+    /// blocks it. If none does, `passed` holds the hits on those that are open.
+    #[inline]
+    pub fn occluded_but(&self, ray: &Ray, t_max: f32, open: &[bool], passed: &mut Passed) -> bool {
+        let mut way = Way { limit: t_max, is_blocked: false, open, passed };
+        dispatch!(self.level, simd => self.search::<_, _, true>(simd, ray, &mut way));
+        way.is_blocked
+    }
+
     #[inline(always)]
-    fn search<S: Simd, const ANY: bool>(&self, simd: S, ray: &Ray, nearest: &mut Nearest) {
-        traverse::<S, ANY>(simd, &self.world, ray, nearest, |primitive, nearest| {
+    fn search<S: Simd, M: Met, const ANY: bool>(&self, simd: S, ray: &Ray, met: &mut M) {
+        traverse::<S, M, ANY>(simd, &self.world, ray, met, |primitive, met| {
             if let Primitive::Instance(index) = *primitive {
-                self.search_instance::<S, ANY>(simd, index, ray, nearest);
+                self.search_instance::<S, M, ANY>(simd, index, ray, met);
             } else {
-                self.test(primitive, ray, nearest);
+                self.test(primitive, ray, met);
             }
         });
     }
 
     /// Not inlined: one traversal inside another is too much for the registers.
     #[inline(never)]
-    fn search_instance<S: Simd, const ANY: bool>(&self, simd: S, index: u32, ray: &Ray, nearest: &mut Nearest) {
+    fn search_instance<S: Simd, M: Met, const ANY: bool>(&self, simd: S, index: u32, ray: &Ray, met: &mut M) {
         let Instance { group, placement } = &self.instances[index as usize];
         let local = placement.ray_to_local(ray);
-        let mut inside = Nearest::before(nearest.t);
+        let mut inside = Placed { met, instance: index };
         simd.vectorize(
             #[inline(always)]
             || {
-                traverse::<S, ANY>(simd, &self.groups[*group as usize], &local, &mut inside, |primitive, nearest| {
-                    self.test(primitive, &local, nearest);
+                let tree = &self.groups[*group as usize];
+                traverse::<S, _, ANY>(simd, tree, &local, &mut inside, |primitive, met| {
+                    self.test(primitive, &local, met);
                 });
             },
         );
-        if inside.found() {
-            *nearest = Nearest { instance: index, ..inside };
-        }
     }
 
     #[inline(always)]
-    fn test(&self, primitive: &Primitive, ray: &Ray, nearest: &mut Nearest) {
+    fn test(&self, primitive: &Primitive, ray: &Ray, met: &mut impl Met) {
         match *primitive {
             Primitive::Sphere { centre, radius, object, instance } => {
-                if let Some(t) = sphere::nearest(centre, radius, ray, nearest.t) {
-                    *nearest = Nearest { t, object, prim: 0, instance, uv: Vec2::ZERO };
+                if let Some(t) = sphere::nearest(centre, radius, ray, met.limit()) {
+                    met.take(Nearest { t, object, prim: 0, instance, uv: Vec2::ZERO });
                 }
             }
-            Primitive::Shape { object, instance } => self.test_shape(object, instance, ray, nearest),
-            Primitive::Curve { object, ref piece } => self.test_curve(object, piece, ray, nearest),
+            Primitive::Shape { object, instance } => {
+                if let Some((t, uv)) = self.test_shape(object, instance, ray, met.limit()) {
+                    met.take(Nearest { t, object, prim: 0, instance, uv });
+                }
+            }
+            Primitive::Curve { object, ref piece } => {
+                if let Some((t, uv)) = self.test_curve(object, piece, ray, met.limit()) {
+                    met.take(Nearest { t, object, prim: piece.segment, instance: NONE, uv });
+                }
+            }
             Primitive::Instance(_) => {} // groups hold no instances
         }
     }
 
     #[inline(never)]
-    fn test_shape(&self, object: u32, instance: u32, ray: &Ray, nearest: &mut Nearest) {
+    fn test_shape(&self, object: u32, instance: u32, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
         let ray = if instance == NONE { *ray } else { self.instances[instance as usize].placement.ray_to_local(ray) };
-        if let Some((t, uv)) = self.shapes[object as usize].intersect(&ray, nearest.t) {
-            *nearest = Nearest { t, object, prim: 0, instance, uv };
-        }
+        self.shapes[object as usize].intersect(&ray, t_max)
     }
 
     #[inline(never)]
-    fn test_curve(&self, object: u32, piece: &Piece, ray: &Ray, nearest: &mut Nearest) {
-        let Shape::Curves(curves) = &self.shapes[object as usize] else { return };
-        if let Some((t, uv)) = curves.intersect(piece, ray, nearest.t) {
-            *nearest = Nearest { t, object, prim: piece.segment, instance: NONE, uv };
-        }
+    fn test_curve(&self, object: u32, piece: &Piece, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
+        let Shape::Curves(curves) = &self.shapes[object as usize] else { return None };
+        curves.intersect(piece, ray, t_max)
     }
 
     /// The surface at a hit of this ray.

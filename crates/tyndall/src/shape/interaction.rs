@@ -48,6 +48,14 @@ impl Interaction {
         Ray::new(offset_point(self.p, self.error, self.ng, dir), dir)
     }
 
+    /// How far a ray along the unit vector `dir` is within the error of the surface beyond the point, but for grazing ones
+    /// [length].
+    #[inline]
+    pub fn thickness(&self, dir: Vec3) -> f32 {
+        const GRAZING: f32 = 1e-3;
+        self.ng.abs().dot(self.error) / self.ng.dot(dir).abs().max(GRAZING)
+    }
+
     /// The ray to another point on a surface, and the distance up to which it must be free: both ends are moved off
     /// their surfaces. The far end allows for the rounding of direction and distance too.
     ///

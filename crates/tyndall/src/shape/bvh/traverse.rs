@@ -32,6 +32,35 @@ impl Nearest {
     }
 }
 
+/// Takes what a ray meets.
+pub(in crate::shape) trait Met {
+    /// How far there is to look.
+    fn limit(&self) -> f32;
+
+    /// Whether the way is known to be blocked.
+    fn is_blocked(&self) -> bool;
+
+    /// A hit before the limit.
+    fn take(&mut self, hit: Nearest);
+}
+
+impl Met for Nearest {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.t
+    }
+
+    #[inline(always)]
+    fn is_blocked(&self) -> bool {
+        self.found()
+    }
+
+    #[inline(always)]
+    fn take(&mut self, hit: Nearest) {
+        *self = hit;
+    }
+}
+
 /// A ray made ready for boxes.
 struct Slabs {
     origin: Vec3,
@@ -119,14 +148,14 @@ impl Stack {
     }
 }
 
-/// Finds the nearest hit before `nearest.t` (or any, if `ANY`) in `tree`; `visit` tests what is not a triangle.
+/// Finds the nearest hit before the limit (or any that blocks, if `ANY`) in `tree`; `visit` tests what is not a triangle.
 #[inline(always)]
-pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
+pub(in crate::shape) fn traverse<S: Simd, M: Met, const ANY: bool>(
     simd: S,
     tree: &Tree,
     ray: &Ray,
-    nearest: &mut Nearest,
-    mut visit: impl FnMut(&Primitive, &mut Nearest),
+    met: &mut M,
+    mut visit: impl FnMut(&Primitive, &mut M),
 ) {
     let Some(mut child) = tree.root else { return };
     let slabs = Slabs::new(ray);
@@ -136,7 +165,7 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
         match child.content() {
             Content::Node(index) => {
                 let node = &tree.nodes[index];
-                let (mask, enter) = slabs.meet(simd, node, nearest.t);
+                let (mask, enter) = slabs.meet(simd, node, met.limit());
                 prefetch_children(tree, node, mask);
                 if let Some(first) = open(node, mask, &enter, &mut stack) {
                     child = first;
@@ -150,7 +179,7 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
                     None => *shear.insert(Shear::new(ray)),
                 };
                 for packet in first..first + count {
-                    test_packet(simd, tree, packet, &shear, nearest);
+                    test_packet(simd, tree, packet, &shear, met);
                 }
             }
             Content::Bundles { first, count } => {
@@ -159,23 +188,23 @@ pub(in crate::shape) fn traverse<S: Simd, const ANY: bool>(
                     None => *sight.insert(Sight::new(ray)),
                 };
                 for bundle in &tree.bundles[first..first + count] {
-                    let mut mask = sight.candidates(simd, bundle, nearest.t);
+                    let mut mask = sight.candidates(simd, bundle, met.limit());
                     while mask != 0 {
-                        visit(&bundle.primitive((mask.trailing_zeros() & 7) as usize), nearest);
+                        visit(&bundle.primitive((mask.trailing_zeros() & 7) as usize), met);
                         mask &= mask - 1;
                     }
                 }
             }
             Content::Others { first, count } => {
                 for primitive in &tree.others[first..first + count] {
-                    visit(primitive, nearest);
+                    visit(primitive, met);
                 }
             }
         }
-        if ANY && nearest.found() {
+        if ANY && met.is_blocked() {
             return;
         }
-        match stack.pop(nearest.t) {
+        match stack.pop(met.limit()) {
             Some(next) => child = next,
             None => return,
         }
@@ -238,17 +267,17 @@ pub(in crate::shape) fn open(node: &Node, mask: u32, enter: &[f32; 8], stack: &m
 }
 
 #[inline(always)]
-fn test_packet<S: Simd>(simd: S, tree: &Tree, packet: usize, shear: &Shear, nearest: &mut Nearest) {
+fn test_packet<S: Simd, M: Met>(simd: S, tree: &Tree, packet: usize, shear: &Shear, met: &mut M) {
     let triangles = &tree.packets[packet];
-    let mut mask = shear.candidates(simd, triangles, nearest.t);
+    let mut mask = shear.candidates(simd, triangles, met.limit());
     while mask != 0 {
         let lane = (mask.trailing_zeros() & 7) as usize;
         mask &= mask - 1;
         let Some(hit) = shear.resolve(triangles, lane) else { continue };
         let t = hit.t as f32;
-        if hit.t > 0.0 && t < nearest.t {
+        if hit.t > 0.0 && t < met.limit() {
             let id = triangles.ids[lane];
-            *nearest = Nearest { t, object: id.object, prim: id.prim, instance: NONE, uv: hit.uv };
+            met.take(Nearest { t, object: id.object, prim: id.prim, instance: NONE, uv: hit.uv });
         }
     }
 }

@@ -1,0 +1,103 @@
+//! What a ray passes on its way: surfaces that are open, all of them in one search, where a ray for each would begin anew.
+
+use super::{
+    Hit, ObjectId,
+    bvh::traverse::{Met, Nearest},
+};
+
+/// Most surfaces that are noted on a way.
+const MOST: usize = 8;
+
+/// The hits of a ray on open surfaces.
+#[derive(Debug, Clone)]
+pub struct Passed {
+    hits: [Nearest; MOST],
+    /// How many there were, noted or not.
+    len: usize,
+}
+
+impl Default for Passed {
+    #[inline]
+    fn default() -> Self {
+        Self { hits: [Nearest::before(0.0); MOST], len: 0 }
+    }
+}
+
+impl Passed {
+    /// In the order of their distances; `None` if there were too many. Where faces meet, an edge can be hit on both.
+    #[inline]
+    pub fn in_order(&mut self) -> Option<impl Iterator<Item = Hit>> {
+        let hits = self.hits.get_mut(..self.len)?;
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
+        Some(hits.iter().map(Nearest::hit))
+    }
+
+    #[inline(always)]
+    fn note(&mut self, hit: Nearest) {
+        if let Some(place) = self.hits.get_mut(self.len) {
+            *place = hit;
+        }
+        self.len += 1;
+    }
+}
+
+/// A way that is free so far.
+pub(super) struct Way<'a> {
+    pub(super) limit: f32,
+    pub(super) is_blocked: bool,
+    /// By object.
+    pub(super) open: &'a [bool],
+    pub(super) passed: &'a mut Passed,
+}
+
+impl Met for Way<'_> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    #[inline(always)]
+    fn is_blocked(&self) -> bool {
+        self.is_blocked
+    }
+
+    #[inline(always)]
+    fn take(&mut self, hit: Nearest) {
+        if self.open[hit.object as usize] {
+            self.passed.note(hit);
+        } else {
+            self.is_blocked = true;
+        }
+    }
+}
+
+/// What is met inside of an instance.
+pub(super) struct Placed<'a, M> {
+    pub(super) met: &'a mut M,
+    pub(super) instance: u32,
+}
+
+impl<M: Met> Met for Placed<'_, M> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.met.limit()
+    }
+
+    #[inline(always)]
+    fn is_blocked(&self) -> bool {
+        self.met.is_blocked()
+    }
+
+    #[inline(always)]
+    fn take(&mut self, hit: Nearest) {
+        self.met.take(Nearest { instance: self.instance, ..hit });
+    }
+}
+
+impl Nearest {
+    #[inline]
+    pub(super) fn hit(&self) -> Hit {
+        let Self { t, object, prim, instance, uv } = *self;
+        Hit { t, object: ObjectId(object), prim, uv, instance }
+    }
+}
