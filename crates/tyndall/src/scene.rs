@@ -194,6 +194,12 @@ impl Scene {
         Some(open)
     }
 
+    /// The same where paths need not stop for lamps that collisions behind a boundary are aimed at.
+    #[inline]
+    pub(crate) fn open_to_paths(&self) -> Option<&[bool]> {
+        self.open().filter(|_| self.facts.has_null_surfaces && !self.facts.holds_lamp.contains(&true))
+    }
+
     /// By object whether it lets all light pass, where that is all there is to know of what light can pass.
     #[inline]
     pub(crate) fn open(&self) -> Option<&[bool]> {

@@ -93,7 +93,11 @@ impl Path {
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
         let scene = self.world(scene);
         let lamp = self.lamp(scene, settings);
-        let (event, aimed) = self.next_event_past(scene, lamp, tally);
+        let passed = if lamp.is_none() { self.pass_open(scene, tally) } else { None };
+        let (event, aimed) = match passed {
+            Some(event) => (event, None),
+            None => self.next_event_past(scene, lamp, tally),
+        };
         if let Some(aimed) = aimed {
             self.sample_aimed(scene, &aimed, sink, tally);
         }
@@ -197,7 +201,7 @@ impl Path {
     }
 
     /// Straight on through a surface without a material.
-    fn cross(&mut self, scene: &Scene, hit: &Interaction) {
+    pub(crate) fn cross(&mut self, scene: &Scene, hit: &Interaction) {
         self.pass_opening(scene, hit);
         self.enter(scene, hit);
         self.ray = hit.spawn(self.ray.dir);

@@ -273,7 +273,19 @@ impl Path {
         }
     }
 
-    /// The flight that a walk has left under way [length].
+    /// Whether a walk has ended at a collision.
+    #[inline]
+    pub(super) fn collision_is_due(&self) -> bool {
+        self.around.left == Left::Collision
+    }
+
+    /// Leaves a flight whose length is drawn [length].
+    #[inline]
+    pub(super) fn leave_flight(&mut self, flight: f32) {
+        self.around.left = Left::Flight(flight);
+    }
+
+    /// The flight that has been left under way [length].
     #[inline]
     pub(super) fn unfinished_flight(&mut self) -> Option<f32> {
         let Left::Flight(flight) = self.around.left else { return None };

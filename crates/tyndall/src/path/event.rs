@@ -87,7 +87,7 @@ impl Path {
 
     /// At a surface within the flight, at a collision at its end, or nowhere.
     #[inline]
-    fn arrive<'s>(
+    pub(super) fn arrive<'s>(
         &mut self,
         scene: &'s Scene,
         hit: Option<Hit>,
@@ -97,24 +97,28 @@ impl Path {
     ) -> Event<'s> {
         match hit {
             Some(hit) => {
-                if let Some(coefficients) = self.inside.coefficients() {
-                    self.weights.pass(coefficients.transmittance(hit.t), self.hero);
-                }
+                self.pass(hit.t);
                 Event::Surface(scene.geometry.interaction(&self.ray, &hit))
             }
             None if flight.is_finite() => self.collide(scene, flight, aim, tally),
             None => {
-                if let Some(coefficients) = self.inside.coefficients() {
-                    self.weights.pass(coefficients.transmittance(f32::INFINITY), self.hero);
-                }
+                self.pass(f32::INFINITY);
                 Event::Escape
             }
         }
     }
 
+    /// Weighs the path for a distance without a collision [length].
+    #[inline]
+    pub(super) fn pass(&mut self, distance: f32) {
+        if let Some(coefficients) = self.inside.coefficients() {
+            self.weights.pass(coefficients.transmittance(distance), self.hero);
+        }
+    }
+
     /// A distance with density `σ_t exp(−σ_t s)` in the hero's lane; infinite where the hero meets nothing.
     #[inline]
-    fn sample_flight(&mut self) -> f32 {
+    pub(super) fn sample_flight(&mut self) -> f32 {
         match self.inside.coefficients() {
             None => f32::INFINITY,
             Some(coefficients) => {

@@ -4,6 +4,7 @@ pub mod aim;
 pub mod deep;
 pub mod event;
 pub mod history;
+mod passage;
 pub mod shadow;
 pub mod turn;
 pub mod vertex;

@@ -108,7 +108,7 @@ fn through(
         if let Some(interface) = scene.object(&surface).interface {
             inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
         }
-        (from, clear) = (hit.t, hit.t * (1.0 + gamma(4)) + surface.thickness(ray.dir));
+        (from, clear) = (hit.t, surface.end_of_error(hit.t, ray.dir));
     }
     if let Some(coefficients) = inside.coefficients() {
         transmittance *= coefficients.transmittance(t_max - from);

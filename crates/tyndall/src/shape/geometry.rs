@@ -13,7 +13,7 @@ use super::{
     curve::Piece,
     instance::Instance,
     interaction::Point,
-    passage::{Passed, Placed, Way},
+    passage::{Passed, Placed, View, Way},
     sphere,
 };
 use crate::math::{Bounds, Ray, Vec2, Vec3};
@@ -160,6 +160,16 @@ impl Geometry {
         let mut way = Way { limit: t_max, is_blocked: false, open, passed };
         dispatch!(self.level, simd => self.search::<_, _, true>(simd, ray, &mut way));
         way.is_blocked
+    }
+
+    /// The nearest surface with `0 < t < t_max` that is not `open`; `passed` holds those hits before `t_max` on open ones that the
+    /// search has come by, all those before the surface among them.
+    #[inline]
+    pub fn intersect_but(&self, ray: &Ray, t_max: f32, open: &[bool], passed: &mut Passed) -> Option<Hit> {
+        let mut view = View { nearest: Nearest::before(t_max), open, passed };
+        dispatch!(self.level, simd => self.search::<_, _, false>(simd, ray, &mut view));
+        let nearest = view.nearest;
+        nearest.found().then(|| nearest.hit())
     }
 
     #[inline(always)]

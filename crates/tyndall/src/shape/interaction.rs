@@ -48,12 +48,12 @@ impl Interaction {
         Ray::new(offset_point(self.p, self.error, self.ng, dir), dir)
     }
 
-    /// How far a ray along the unit vector `dir` is within the error of the surface beyond the point, but for grazing ones
-    /// [length].
+    /// The distance at which a ray along the unit vector `dir` that meets the surface at distance `t` has left its error behind,
+    /// unless it grazes [length].
     #[inline]
-    pub fn thickness(&self, dir: Vec3) -> f32 {
+    pub fn end_of_error(&self, t: f32, dir: Vec3) -> f32 {
         const GRAZING: f32 = 1e-3;
-        self.ng.abs().dot(self.error) / self.ng.dot(dir).abs().max(GRAZING)
+        t * (1.0 + gamma(4)) + self.ng.abs().dot(self.error) / self.ng.dot(dir).abs().max(GRAZING)
     }
 
     /// The ray to another point on a surface, and the distance up to which it must be free: both ends are moved off

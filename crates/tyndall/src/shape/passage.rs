@@ -34,6 +34,11 @@ impl Passed {
 
     #[inline(always)]
     fn note(&mut self, hit: Nearest) {
+        // A packet that is not full repeats its last triangle.
+        let last = self.len.checked_sub(1).and_then(|last| self.hits.get(last));
+        if last.is_some_and(|last| last.is_again(&hit)) {
+            return;
+        }
         if let Some(place) = self.hits.get_mut(self.len) {
             *place = hit;
         }
@@ -71,6 +76,35 @@ impl Met for Way<'_> {
     }
 }
 
+/// What is seen through open surfaces.
+pub(super) struct View<'a> {
+    pub(super) nearest: Nearest,
+    /// By object.
+    pub(super) open: &'a [bool],
+    pub(super) passed: &'a mut Passed,
+}
+
+impl Met for View<'_> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.nearest.t
+    }
+
+    #[inline(always)]
+    fn is_blocked(&self) -> bool {
+        self.nearest.found()
+    }
+
+    #[inline(always)]
+    fn take(&mut self, hit: Nearest) {
+        if self.open[hit.object as usize] {
+            self.passed.note(hit);
+        } else {
+            self.nearest = hit;
+        }
+    }
+}
+
 /// What is met inside of an instance.
 pub(super) struct Placed<'a, M> {
     pub(super) met: &'a mut M,
@@ -95,6 +129,11 @@ impl<M: Met> Met for Placed<'_, M> {
 }
 
 impl Nearest {
+    #[inline(always)]
+    fn is_again(&self, other: &Self) -> bool {
+        (self.prim, self.object, self.instance) == (other.prim, other.object, other.instance)
+    }
+
     #[inline]
     pub(super) fn hit(&self) -> Hit {
         let Self { t, object, prim, instance, uv } = *self;

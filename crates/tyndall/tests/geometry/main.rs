@@ -4,6 +4,7 @@ mod agreement;
 mod clearance;
 mod leaks;
 mod meshes;
+mod passage;
 mod round;
 mod scale;
 mod spawn;
