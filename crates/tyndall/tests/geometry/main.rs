@@ -1,6 +1,7 @@
 //! Rays, surfaces and distances.
 
 mod agreement;
+mod bends;
 mod clearance;
 mod leaks;
 mod meshes;

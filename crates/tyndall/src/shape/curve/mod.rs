@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | [`Style::Flat`] | a ribbon that turns to whoever looks | to the ray |
 //! | [`Style::Ribbon`] | a ribbon with normals of its own | to the ray, across the curve (as pbrt); narrower seen from its edge |
-//! | [`Style::Round`] | a tube, open at its ends, met from outside only | that of the tube |
+//! | [`Style::Round`] | a tube, open at its ends, with parts of balls at sharp bends, met from outside only | that of the tube |
 //! | [`Style::Round`], [`Basis::Linear`] | where a ball goes that moves along: closed, with balls at joints and ends (as Mitsuba) | that of the ball |
 //!
 //! `u` runs along the strand. `v = (1 + h)/2`, where `h` is the offset of the ray from the axis over the radius, positive on
@@ -16,6 +16,7 @@
 
 mod basis;
 mod capsule;
+mod joint;
 mod segment;
 
 use glam::{DVec3, DVec4, Vec4};
@@ -31,7 +32,8 @@ use super::{
 };
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
 use capsule::Capsule;
-use segment::{Bezier, Line};
+use joint::Joint;
+use segment::{Bezier, Line, Meeting, nearer};
 
 /// A segment is cut in halves at most so often, and these again, if their boxes have less than [`WORTHWHILE`] of its surface.
 const CUTS: u32 = 2;
@@ -191,7 +193,9 @@ impl Curves {
         (0..self.segments.len() as u32).flat_map(|segment| {
             let bezier = self.segments[segment as usize].bezier();
             let mut pieces = Vec::new();
-            cut(&bezier, [0.0, 1.0], 0, &mut |part, sheath| pieces.push((Piece { segment, part }, sheath)));
+            cut(&bezier, ([0.0, 1.0], sheath(&bezier, [0.0, 1.0])), 0, &mut |part, sheath| {
+                pieces.push((Piece { segment, part }, sheath));
+            });
             pieces
         })
     }
@@ -206,15 +210,21 @@ impl Curves {
         let segment = &self.segments[piece.segment as usize];
         let (bezier, part) = (segment.bezier(), piece.part.map(f64::from));
         let [distance, w] = match self.style {
-            Style::Round => match self.capsule(piece.segment) {
-                Some(capsule) => capsule.enter(&line),
-                None => line.see(&bezier).enter(part),
-            },
+            Style::Round => self.enter(piece, &bezier, &line),
             Style::Flat => line.see(&bezier).cross(part, |_| 1.0),
             Style::Ribbon => line.see(&bezier).cross(part, |w| self.normal(piece.segment, w).dot(line.dir).abs()),
         }?;
         let t = (distance / length) as f32;
         (t > 0.0 && t < t_max).then_some((t, Vec2::new(w as f32, 0.0)))
+    }
+
+    /// Where a ray comes into a piece of a tube, or into the bend at its end.
+    fn enter(&self, piece: &Piece, bezier: &Bezier, line: &Line) -> Option<Meeting> {
+        if let Some(capsule) = self.capsule(piece.segment) {
+            return capsule.enter(line);
+        }
+        let joint = if piece.part[1] == 1.0 { self.joint(piece.segment, bezier) } else { None };
+        nearer([line.see(bezier).enter(piece.part.map(f64::from)), joint.and_then(|joint| joint.enter(line))])
     }
 
     /// A straight piece of a tube, if this is one: its neighbours are those that share its ends.
@@ -232,6 +242,11 @@ impl Curves {
         })
     }
 
+    /// The sharp bend at the end of a segment.
+    fn joint(&self, segment: u32, bezier: &Bezier) -> Option<Joint> {
+        Joint::between(bezier, &self.segments.get(segment as usize + 1)?.bezier())
+    }
+
     /// The normal of a ribbon, turned evenly from one end to the other.
     fn normal(&self, segment: u32, w: f64) -> DVec3 {
         let [a, b] = self.normals[segment as usize].map(|n| n.as_dvec3().normalize_or_zero());
@@ -247,12 +262,14 @@ impl Curves {
         let (line, _) = line(ray);
         let Segment { u: [u0, u1], .. } = self.segments[segment as usize];
         let bezier = self.segments[segment as usize].bezier();
-        let capsule = self.capsule(segment);
         let w = f64::from(at.x);
-        let surface = match capsule {
-            Some(capsule) => capsule.meet(&line),
-            None => (self.style == Style::Round).then(|| line.see(&bezier).refined(w)),
+        let is_tube = self.style == Style::Round;
+        let capsule = self.capsule(segment).and_then(|capsule| capsule.meet(&line));
+        let ball = match capsule {
+            None if is_tube && w == 1.0 => self.joint(segment, &bezier).and_then(|joint| joint.enter(&line)),
+            _ => capsule,
         };
+        let surface = ball.or_else(|| is_tube.then(|| line.see(&bezier).refined(w)));
         let w = surface.map_or(w, |[_, w]| w);
         let jet = bezier.at(w);
         let (centre, tangent, radius) = (jet.p.truncate(), jet.d.truncate(), jet.p.w);
@@ -262,7 +279,7 @@ impl Curves {
         let size = centre.abs().max_element() + radius;
         let (p, ng, h, error) = if let Some([distance, _]) = surface {
             let from = line.origin + line.dir * distance - centre;
-            let (out, slope) = match capsule {
+            let (out, slope) = match ball {
                 Some(_) => (from, 0.0),
                 None => (from.reject_from_normalized(axis), jet.d.w / tangent.length()),
             };
@@ -323,16 +340,18 @@ fn sheath(bezier: &Bezier, part: [f32; 2]) -> Sheath {
     Sheath { ends: ends.map(DVec3::as_vec3), radius: (radius as f32).next_up() }
 }
 
-/// Cuts a part of a segment into halves while that is worth it: `cuts` are those behind it.
-fn cut(bezier: &Bezier, part: [f32; 2], cuts: u32, found: &mut impl FnMut([f32; 2], Sheath)) {
-    let whole = sheath(bezier, part);
+/// Cuts a part of a segment, with its sheath, into halves while that is worth it: `cuts` are those behind it.
+fn cut(bezier: &Bezier, (part, whole): ([f32; 2], Sheath), cuts: u32, found: &mut impl FnMut([f32; 2], Sheath)) {
     let [from, to] = part;
-    let middle = 0.5 * (from + to);
-    let halves = [[from, middle], [middle, to]];
-    let area = |part: [f32; 2]| sheath(bezier, part).bounds().half_area();
     let bulge = bezier.bulge() * f64::from(to - from).powi(2);
-    let is_large = || area(halves[0]) + area(halves[1]) < WORTHWHILE * whole.bounds().half_area();
-    if !(cuts < MAX_CUTS && bulge > BENT * bezier.reach() || cuts < CUTS && is_large()) {
+    let is_bent = cuts < MAX_CUTS && bulge > BENT * bezier.reach();
+    if !is_bent && cuts >= CUTS {
+        return found(part, whole);
+    }
+    let middle = 0.5 * (from + to);
+    let halves = [[from, middle], [middle, to]].map(|part| (part, sheath(bezier, part)));
+    let area = |sheath: &Sheath| sheath.bounds().half_area();
+    if !is_bent && area(&halves[0].1) + area(&halves[1].1) > WORTHWHILE * area(&whole) {
         return found(part, whole);
     }
     for half in halves {

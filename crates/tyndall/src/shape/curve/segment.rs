@@ -95,7 +95,7 @@ impl Bezier {
 }
 
 /// That at the lesser distance.
-fn nearer<const N: usize>(found: [Option<Meeting>; N]) -> Option<Meeting> {
+pub(super) fn nearer<const N: usize>(found: [Option<Meeting>; N]) -> Option<Meeting> {
     found.into_iter().flatten().min_by(|a, b| a[0].total_cmp(&b[0]))
 }
 
@@ -242,9 +242,11 @@ impl Seen<'_> {
         }
         let discriminant = qb * qb - qa * qc;
         let s = (-qb - discriminant.max(0.0).sqrt()) / qa;
-        // The foot of the perpendicular moves faster than along a straight line where the curve bends towards the ray.
-        let bend = s * dd.z - c.dot(dd.xy());
-        Some((along + s, (s * vd - cv) / (vv - bend).max(0.25 * vv), discriminant >= 0.0))
+        // The foot of the perpendicular moves faster than along a straight line where the curve bends towards the ray. Only what is
+        // across the curve bends it: where three control points coincide, it stops, and is straight.
+        let foot = s * vd - cv;
+        let bend = s * dd.z - c.dot(dd.xy()) - foot * v.truncate().dot(dd.truncate()) / vv;
+        Some((along + s, foot / (vv - bend).max(0.25 * vv), discriminant >= 0.0))
     }
 
     /// Where a ribbon that is turned to the ray is met. `half` is its half-width at a parameter, in units of the radius.
