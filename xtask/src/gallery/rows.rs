@@ -62,7 +62,7 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "glasses",
         scene: "glasses/scene.pbrt",
-        spp: 32,
+        spp: 320,
         layers: Layers::Media,
         options: &[],
         title: "Whole milk and skimmed milk",
@@ -92,7 +92,7 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "marble-figure",
         scene: "marble/figure.pbrt",
-        spp: 160,
+        spp: 256,
         layers: Layers::Media,
         options: &[],
         title: "A figure of marble",
@@ -102,7 +102,7 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "fog",
         scene: "fog/scene.pbrt",
-        spp: 128,
+        spp: 1200,
         layers: Layers::Media,
         options: &[],
         title: "Shafts of light",
@@ -122,7 +122,7 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "cornell-foggy",
         scene: "cornell/foggy.pbrt",
-        spp: 128,
+        spp: 768,
         layers: Layers::Media,
         options: &[],
         title: "Cornell box, foggy",
@@ -132,7 +132,7 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "cornell-milky",
         scene: "cornell/milky.pbrt",
-        spp: 96,
+        spp: 1600,
         layers: Layers::Media,
         options: &[],
         title: "Cornell box, milky",
