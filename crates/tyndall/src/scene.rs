@@ -11,7 +11,7 @@ use crate::{
     material::{Index, Material},
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Distances, Geometry, Hit, Interaction, ObjectId},
+    shape::{Distances, Geometry, Hit, Interaction, ObjectId, Shape},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -35,6 +35,13 @@ pub struct Object {
     pub body: Option<Member>,
     /// What it is among grains, if it has to do with them.
     pub granular: Option<Granular>,
+}
+
+impl Object {
+    /// Whether a medium is on one of its sides.
+    fn bounds(&self, medium: MediumId) -> bool {
+        self.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium))
+    }
 }
 
 /// The lights that the primitives of an object are.
@@ -78,8 +85,12 @@ pub struct Scene {
 struct Facts {
     /// Whether any surface lets light pass unchanged, so that shadow rays have to walk.
     has_null_surfaces: bool,
-    /// By medium: whether a straight line from inside it can reach a light.
-    lit: Vec<bool>,
+    /// By medium: how light samples from inside it reach lights.
+    lit: Vec<Lit>,
+    /// By object: the index of a smooth wall that light samples may bend at \[1\].
+    walls: Vec<Option<f32>>,
+    /// By medium: the ball that holds it and that alone bounds it, if that is such a wall.
+    only_wall: Vec<Option<ObjectId>>,
     /// By medium: a box that it does not reach out of.
     extent: Vec<Bounds>,
     /// By medium: the greatest clearance in it [length].
@@ -94,6 +105,17 @@ struct Facts {
     bodies: Vec<Body>,
     /// What the camera is in.
     around_camera: Within,
+}
+
+/// How light samples from inside a medium reach lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lit {
+    /// Not at all.
+    Never,
+    /// Straight.
+    Straight,
+    /// Through walls that bend them: see [`crate::bend`].
+    Bent,
 }
 
 impl Scene {
@@ -150,6 +172,7 @@ impl Scene {
         let Self { camera, geometry, objects, materials, lights, .. } = &self;
         let objects: Vec<_> =
             (0..).map(ObjectId).zip(objects.iter()).filter(|(_, object)| object.granular != Some(absent)).collect();
+        let walls = walls(&self, &bodies);
         let is_open = |(_, o): &(ObjectId, &Object)| may_be_open(&materials[o.material.0 as usize], materials);
         let media = || (0..).map(MediumId).take(self.media.len());
         let extent: Vec<_> = media().map(|medium| extent(medium, camera, geometry, &objects, &bodies)).collect();
@@ -158,8 +181,18 @@ impl Scene {
             has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
             lit: media()
                 .zip(&extent)
-                .map(|(m, extent)| opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, materials, lights))
+                .map(|(m, extent)| {
+                    if opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, materials, lights) {
+                        Lit::Straight
+                    } else if objects.iter().any(|(id, o)| o.bounds(m) && walls[id.0 as usize].is_some()) {
+                        Lit::Bent
+                    } else {
+                        Lit::Never
+                    }
+                })
                 .collect(),
+            only_wall: media().map(|m| only_wall(m, &objects, &walls, geometry)).collect(),
+            walls,
             deepest: extent.iter().map(|extent| deepest(extent, geometry)).collect(),
             extent,
             bare_lights: bare_lights(lights),
@@ -330,11 +363,29 @@ impl Scene {
         self.facts.has_null_surfaces
     }
 
-    /// Whether sampling lights from inside a medium can ever succeed: not where every way out leads through glass and
-    /// no light is within.
+    /// The whole surface of a medium, if it is one ball at which light samples may bend.
+    #[inline]
+    pub fn only_wall(&self, medium: MediumId) -> Option<ObjectId> {
+        self.facts.only_wall[medium.0 as usize]
+    }
+
+    /// Whether sampling lights straight from inside a medium can ever succeed: not where every way out leads through glass
+    /// and no light is within.
     #[inline]
     pub fn light_can_reach(&self, medium: Option<MediumId>) -> bool {
-        medium.is_none_or(|id| self.facts.lit[id.0 as usize])
+        self.lit(medium) == Lit::Straight
+    }
+
+    /// How light samples from inside a medium reach lights.
+    #[inline]
+    pub fn lit(&self, medium: Option<MediumId>) -> Lit {
+        medium.map_or(Lit::Straight, |id| self.facts.lit[id.0 as usize])
+    }
+
+    /// The index inside an object over that outside \[1\], if light samples may bend at its surface.
+    #[inline]
+    pub fn wall(&self, object: ObjectId) -> Option<f32> {
+        self.facts.walls[object.0 as usize]
     }
 }
 
@@ -354,11 +405,34 @@ fn can_be_lit(
     materials: &[Material],
     lights: &LightTable,
 ) -> bool {
-    let touches = |o: &Object| o.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium));
-    objects.iter().any(|(_, o)| touches(o) && may_be_open(&materials[o.material.0 as usize], materials))
+    objects.iter().any(|(_, o)| o.bounds(medium) && may_be_open(&materials[o.material.0 as usize], materials))
         || *extent == Bounds::EVERYTHING
         || extent.is_empty()
         || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(extent, &b))
+}
+
+/// The walls that light samples may bend at: polished, of bodies that nothing overlaps, and where there is a light for which
+/// that is worth while.
+fn walls(scene: &Scene, bodies: &[Body]) -> Vec<Option<f32>> {
+    let Scene { objects, materials, lights, .. } = scene;
+    let is_simple = bodies.is_empty() && objects.iter().all(|o| o.granular.is_none());
+    let pays = is_simple && lights.lights.iter().any(Light::is_worth_bending);
+    let wall = |(id, o): (_, &Object)| {
+        materials[o.material.0 as usize].polished().filter(|_| pays && !scene.geometry.is_in_group(ObjectId(id)))
+    };
+    (0..).zip(objects.iter()).map(wall).collect()
+}
+
+fn only_wall(
+    medium: MediumId,
+    objects: &[(ObjectId, &Object)],
+    walls: &[Option<f32>],
+    geometry: &Geometry,
+) -> Option<ObjectId> {
+    let mut around = objects.iter().filter(|(_, o)| o.bounds(medium)).map(|(id, _)| *id);
+    let (first, None) = (around.next()?, around.next()) else { return None };
+    let is_ball = matches!(geometry.shape(first), Shape::Sphere(sphere) if sphere.round().is_some());
+    (is_ball && walls[first.0 as usize].is_some()).then_some(first)
 }
 
 /// Whether light may leave the bodies of a medium straight: unless each body of the scene has a surface that bends it

@@ -1,6 +1,6 @@
 //! How a path enters a walk deep inside a medium, and how it comes back. See [`crate::integrator::walk`].
 
-use super::{Event, Path, PathWeights, Turn};
+use super::{Event, Path, PathWeights, Sight, Turn};
 use crate::{
     integrator::{
         VolPath,
@@ -12,7 +12,7 @@ use crate::{
     medium::Inside,
     phase::Phase,
     sampling::Rng,
-    scene::Scene,
+    scene::{Lit, Scene},
     spectrum::Lanes,
     tally::Tally,
 };
@@ -134,7 +134,7 @@ impl Path {
     /// Whether light is sampled at a collision about whose surroundings nothing is known.
     #[inline]
     pub(crate) fn attempt(&self, scene: &Scene) -> Attempt {
-        if scene.light_can_reach(self.inside.id()) { Attempt::CERTAIN } else { Attempt::NONE }
+        if scene.lit(self.inside.id()) == Lit::Never { Attempt::NONE } else { Attempt::CERTAIN }
     }
 
     /// At a collision: how far the nearest surface is, and with that whether light is sampled.
@@ -148,7 +148,7 @@ impl Path {
         let around = Ball::around(scene, p, most);
         let odds = depths.odds(around.radius);
         self.around.ball = self.around.behind.touching(scene, p, around, most);
-        Attempt { odds, supposed: 1.0, made: odds == 1.0 || self.sampler.rng.next_positive() <= odds }
+        Attempt { odds, supposed: depths.share, made: odds == 1.0 || self.sampler.rng.next_positive() <= odds }
     }
 
     /// A light sample that a walk has announced, and what the path weighs there; `None` if it is not made: the ball of the
@@ -191,7 +191,8 @@ impl Path {
             ball,
             mean_free_path: 1.0 / depths.sigma_t,
             sigma_min: depths.sigma_min,
-            lit: depths.lit,
+            share: depths.share,
+            lit: depths.lit != Lit::Never,
             collisions: 0,
             limit: depths.limit.min(allowed),
             length: 0.0,
@@ -219,6 +220,7 @@ impl Path {
                     let odds = depths.odds(self.around.ball.room(walker.p));
                     self.weights.scatter(Lanes::ONE, phase.eval(walker.cos_theta), odds);
                     self.last_vertex = Reference { p: walker.p, normal: None };
+                    self.sight = Sight::from(depths.lit);
                 }
                 Left::Flight(walker.flight)
             }

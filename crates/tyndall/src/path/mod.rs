@@ -5,6 +5,7 @@ pub mod deep;
 pub mod event;
 pub mod history;
 pub mod shadow;
+pub mod sight;
 pub mod turn;
 pub mod vertex;
 pub mod weights;
@@ -12,6 +13,7 @@ pub mod weights;
 pub use deep::{Attempt, Surroundings};
 pub use event::Event;
 pub use history::History;
+pub use sight::Sight;
 pub use turn::{Kind, Source, Turn};
 pub use vertex::Vertex;
 pub use weights::PathWeights;
@@ -54,6 +56,8 @@ pub struct Path {
     pub stage: Stage,
     /// The last vertex from which a light could have been sampled.
     pub last_vertex: Reference,
+    /// How it was sampled.
+    pub sight: Sight,
 }
 
 impl Path {
@@ -73,6 +77,7 @@ impl Path {
             history: History::default(),
             stage: Stage::default(),
             last_vertex: Reference { p: ray.origin, normal: None },
+            sight: Sight::Straight,
         }
     }
 }
