@@ -1,6 +1,10 @@
 //! The resolved, immutable world that a render reads: arrays and typed ids, made once.
 
+mod lit;
+
 use std::sync::Arc;
+
+pub use lit::Lit;
 
 use crate::{
     camera::Camera,
@@ -8,10 +12,10 @@ use crate::{
     granular::Granular,
     light::{AreaLight, Light, LightId, LightTable},
     lpe::{Automaton, Names, PathLayer, automaton::BuildError},
-    material::{Index, Material},
+    material::Material,
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Distances, Geometry, Hit, Interaction, ObjectId, Shape},
+    shape::{Distances, Geometry, Hit, Interaction, ObjectId},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -107,17 +111,6 @@ struct Facts {
     around_camera: Within,
 }
 
-/// How light samples from inside a medium reach lights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lit {
-    /// Not at all.
-    Never,
-    /// Straight.
-    Straight,
-    /// Through walls that bend them: see [`crate::bend`].
-    Bent,
-}
-
 impl Scene {
     /// Puts a scene together.
     #[allow(clippy::too_many_arguments)] // one for each array of the world
@@ -172,7 +165,7 @@ impl Scene {
         let Self { camera, geometry, objects, materials, lights, .. } = &self;
         let objects: Vec<_> =
             (0..).map(ObjectId).zip(objects.iter()).filter(|(_, object)| object.granular != Some(absent)).collect();
-        let walls = walls(&self, &bodies);
+        let walls = lit::walls(&self, &bodies);
         let is_open = |(_, o): &(ObjectId, &Object)| may_be_open(&materials[o.material.0 as usize], materials);
         let media = || (0..).map(MediumId).take(self.media.len());
         let extent: Vec<_> = media().map(|medium| extent(medium, camera, geometry, &objects, &bodies)).collect();
@@ -182,7 +175,7 @@ impl Scene {
             lit: media()
                 .zip(&extent)
                 .map(|(m, extent)| {
-                    if opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, materials, lights) {
+                    if lit::opens_straight(m, &bodies) || lit::can_be_lit(m, extent, &objects, materials, lights) {
                         Lit::Straight
                     } else if objects.iter().any(|(id, o)| o.bounds(m) && walls[id.0 as usize].is_some()) {
                         Lit::Bent
@@ -191,7 +184,7 @@ impl Scene {
                     }
                 })
                 .collect(),
-            only_wall: media().map(|m| only_wall(m, &objects, &walls, geometry)).collect(),
+            only_wall: media().map(|m| lit::only_wall(m, &objects, &walls, geometry)).collect(),
             walls,
             deepest: extent.iter().map(|extent| deepest(extent, geometry)).collect(),
             extent,
@@ -395,58 +388,6 @@ const FEW_SURFACES: usize = 1000;
 const SMALL_LAMP: f32 = 0.2;
 /// The depth of a medium from which on walks serve it better than collisions aimed at its lamps \[mean free paths\].
 const THIN: f32 = 8.0;
-
-/// A medium is lit directly if it has an open boundary (one without a material, or with holes), if it fills the space of a
-/// light, or if it reaches as far as we know.
-fn can_be_lit(
-    medium: MediumId,
-    extent: &Bounds,
-    objects: &[(ObjectId, &Object)],
-    materials: &[Material],
-    lights: &LightTable,
-) -> bool {
-    objects.iter().any(|(_, o)| o.bounds(medium) && may_be_open(&materials[o.material.0 as usize], materials))
-        || *extent == Bounds::EVERYTHING
-        || extent.is_empty()
-        || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(extent, &b))
-}
-
-/// The walls that light samples may bend at: polished, of bodies that nothing overlaps, and where there is a light for which
-/// that is worth while.
-fn walls(scene: &Scene, bodies: &[Body]) -> Vec<Option<f32>> {
-    let Scene { objects, materials, lights, .. } = scene;
-    let is_simple = bodies.is_empty() && objects.iter().all(|o| o.granular.is_none());
-    let pays = is_simple && lights.lights.iter().any(Light::is_worth_bending);
-    let wall = |(id, o): (_, &Object)| {
-        materials[o.material.0 as usize].polished().filter(|_| pays && !scene.geometry.is_in_group(ObjectId(id)))
-    };
-    (0..).zip(objects.iter()).map(wall).collect()
-}
-
-fn only_wall(
-    medium: MediumId,
-    objects: &[(ObjectId, &Object)],
-    walls: &[Option<f32>],
-    geometry: &Geometry,
-) -> Option<ObjectId> {
-    let mut around = objects.iter().filter(|(_, o)| o.bounds(medium)).map(|(id, _)| *id);
-    let (first, None) = (around.next()?, around.next()) else { return None };
-    let is_ball = matches!(geometry.shape(first), Shape::Sphere(sphere) if sphere.round().is_some());
-    (is_ball && walls[first.0 as usize].is_some()).then_some(first)
-}
-
-/// Whether light may leave the bodies of a medium straight: unless each body of the scene has a surface that bends it
-/// against vacuum and against each other body.
-fn opens_straight(medium: MediumId, bodies: &[Body]) -> bool {
-    let index = |body: &Body| match body.index {
-        Some(Index::Constant(eta)) if eta != 1.0 => Some(eta),
-        _ => None,
-    };
-    let mut indices: Vec<_> = bodies.iter().map(index).collect();
-    indices.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    let bends = indices.iter().all(Option::is_some) && indices.windows(2).all(|w| w[0] != w[1]);
-    !bends && bodies.iter().any(|body| body.medium == Some(medium))
-}
 
 /// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
 /// in the world itself.

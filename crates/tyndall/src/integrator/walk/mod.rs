@@ -11,7 +11,7 @@
 //! q = exp(−min σ_t · c)
 //! ```
 //!
-//! (0.3 of that where light samples must bend, see [`super::bent`])
+//! (0.3 of that where light samples must bend, see [`crate::bend`])
 //! and counts as a technique of density `q p_light`: what it finds is divided by `q p_light + p_phase T`, what the path
 //! runs into by the same (the balance heuristic). `q` depends on what the path has been through and on nothing that is
 //! drawn later, so both together stay unbiased.
