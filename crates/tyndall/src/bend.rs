@@ -175,13 +175,16 @@ impl Wall {
     }
 
     /// The way from `x` through this wall to `goal`, where the index on the side of `x` is `eta` times that beyond: one that obeys
-    /// Snell's law, if it is found.
-    pub fn bend(&self, x: Vec3, eta: f32, goal: &Goal) -> Option<Bend> {
+    /// Snell's law, if it is found. The search ends where it is farther than `reach` from `x` [length].
+    pub fn bend(&self, x: Vec3, eta: f32, goal: &Goal, reach: f32) -> Option<Bend> {
         let (x, eta) = (x.as_dvec3(), f64::from(eta));
         let mut s = self.begin(x, eta, goal)?;
         for _ in 0..STEPS {
             let n = self.normal(s);
             let a = s.distance(x);
+            if a > f64::from(reach) {
+                return None;
+            }
             let d = (s - x) / a;
             let (u, nearness) = goal.seen_from(s);
             let v = eta * d - u;

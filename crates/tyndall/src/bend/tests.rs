@@ -37,7 +37,7 @@ fn behind_a_flat_face_the_way_obeys_snells_law() {
                 let sines = |r: f64| f64::from(eta) * r / r.hypot(depth) - (wide - r) / (wide - r).hypot(high);
                 let r = root(wide.min(0.0) - 1e-9, wide.max(0.0) + 1e-9, sines);
                 let expected = ((foot + along * r) - x.as_dvec3()).normalize();
-                let found = wall.bend(x, eta, &point(y));
+                let found = wall.bend(x, eta, &point(y), f32::INFINITY);
                 let Some(found) = found else {
                     assert!(eta <= 1.0, "η = {eta}, depth {depth}, to ({wide}, {high}): not found");
                     lost += 1;
@@ -59,7 +59,7 @@ fn parallel_light_bends_by_the_sine() {
     for eta in INDICES {
         for sine in [0.0f32, 0.2, 0.6, 0.99] {
             let dir = Vec3::new(sine * 0.6, (1.0 - sine * sine).sqrt(), sine * 0.8);
-            let found = wall.bend(x, eta, &Goal::Infinity(dir));
+            let found = wall.bend(x, eta, &Goal::Infinity(dir), f32::INFINITY);
             let Some(found) = found else {
                 assert!(sine / eta > 1.0, "{eta} {sine}: there is a way");
                 continue;
@@ -91,7 +91,9 @@ fn behind_the_wall_of_a_ball_the_way_obeys_snells_law() {
                 let s = centre + DVec3::new(angle.sin(), angle.cos(), 0.0) * radius;
                 let expected = (s - x.as_dvec3()).normalize();
                 let wall = Wall::ball(centre, radius, x.as_dvec3()).unwrap();
-                let found = wall.bend(x, eta, &point(y)).unwrap_or_else(|| panic!("{eta} {depth} {beside} {height}"));
+                let found = wall
+                    .bend(x, eta, &point(y), f32::INFINITY)
+                    .unwrap_or_else(|| panic!("{eta} {depth} {beside} {height}"));
                 let off = (found.dir.as_dvec3() - expected).length();
                 assert!(off < 1e-5, "η = {eta}, depth {depth}, to ({beside}, {height}): {off:e}");
             }
@@ -122,7 +124,7 @@ fn cases() -> Vec<(Wall, Vec3, Goal)> {
 fn the_spread_is_that_of_neighbouring_ways() {
     for (wall, x, goal) in cases() {
         for eta in INDICES {
-            let Some(found) = wall.bend(x, eta, &goal) else { continue };
+            let Some(found) = wall.bend(x, eta, &goal, f32::INFINITY) else { continue };
             let (e1, e2) = found.onward.any_orthonormal_pair();
             let (step, moved): (f32, Box<dyn Fn(Vec3) -> Goal>) = match goal {
                 Goal::Point { p, .. } => (0.01 * p.distance(x), Box::new(move |by| point(p + by))),
@@ -130,7 +132,7 @@ fn the_spread_is_that_of_neighbouring_ways() {
             };
             // Differences over two steps: their error is of fourth order, and of rounding 10⁻⁵.
             let derivative = |e: Vec3| {
-                let at = |k: f32| wall.bend(x, eta, &moved(e * (k * step))).unwrap().dir.as_dvec3();
+                let at = |k: f32| wall.bend(x, eta, &moved(e * (k * step)), f32::INFINITY).unwrap().dir.as_dvec3();
                 (at(-2.0) - at(2.0) + 8.0 * (at(1.0) - at(-1.0))) / (12.0 * f64::from(step))
             };
             let expected = derivative(e1).cross(derivative(e2)).length();
@@ -144,7 +146,7 @@ fn the_spread_is_that_of_neighbouring_ways() {
 #[test]
 fn without_a_step_of_the_index_light_goes_straight() {
     for (wall, x, goal) in cases() {
-        let Some(found) = wall.bend(x, 1.0, &goal) else { panic!("{wall:?} {goal:?}") };
+        let Some(found) = wall.bend(x, 1.0, &goal, f32::INFINITY) else { panic!("{wall:?} {goal:?}") };
         let expected = match goal {
             Goal::Point { p, .. } => 1.0 / p.distance_squared(x),
             Goal::Infinity(_) => 1.0,
@@ -165,7 +167,8 @@ fn the_way_does_not_depend_on_the_size_of_the_world() {
                 Goal::Point { p, ng } => (Goal::Point { p: p * scale, ng }, scale * scale),
                 Goal::Infinity(_) => (goal, 1.0),
             };
-            let (here, there) = (wall.bend(x, 1.5, &goal), scaled.bend(x * scale, 1.5, &goal_there));
+            let (here, there) =
+                (wall.bend(x, 1.5, &goal, f32::INFINITY), scaled.bend(x * scale, 1.5, &goal_there, f32::INFINITY));
             let (Some(here), Some(there)) = (here, there) else { panic!("{here:?} {there:?}") };
             assert!((here.dir - there.dir).length() < 1e-5 && (there.spread * area / here.spread - 1.0).abs() < 1e-4);
         }

@@ -78,7 +78,7 @@ impl Scene {
         let index = self.wall(part.0)?;
         let (wall, faces) = Wall::of(self.geometry.shape(part.0), part.1, from.p)?;
         let eta = if faces { 1.0 / index } else { index };
-        Some(Way { part, bend: wall.bend(from.p, eta, goal)?, eta, faces })
+        Some(Way { part, bend: wall.bend(from.p, eta, goal, from.reach)?, eta, faces })
     }
 }
 
