@@ -7,6 +7,7 @@
 //! [`bsdf`], [`light`], [`shape`], [`camera`]), then [`path`] and [`integrator`]; and beside
 //! them the [`lecture`] that it all comes from.
 
+pub mod bend;
 pub mod bsdf;
 pub mod camera;
 pub mod feature;

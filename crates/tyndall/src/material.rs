@@ -18,7 +18,7 @@ use crate::{
     },
     relief::Relief,
     scene::MaterialId,
-    spectrum::{Lanes, Sampled, Wavelengths, glass::Glass},
+    spectrum::{Lanes, Sampled, Spectrum, Wavelengths, glass::Glass},
     texture::{Texture, TexturePoint},
 };
 
@@ -286,6 +286,20 @@ impl Material {
             Self::Dielectric { eta, .. } => Some(eta),
             _ => None,
         }
+    }
+
+    /// The index of a clear and smooth dielectric, if this is one, the same everywhere and at every wavelength \[1\].
+    pub fn polished(&self) -> Option<f32> {
+        let Self::Dielectric { eta: Index::Constant(eta), alpha, reflection_tint, transmission_tint } = self else {
+            return None;
+        };
+        let number = |texture: &Texture| match texture.constant() {
+            Some(Spectrum::Constant(value)) => Some(*value),
+            _ => None,
+        };
+        let smooth = [&alpha.u, &alpha.v].map(|a| number(a).is_some_and(|a| a <= 0.0));
+        let clear = [reflection_tint, transmission_tint].map(|tint| number(tint) == Some(1.0));
+        (smooth == [true; 2] && clear == [true; 2]).then_some(*eta)
     }
 
     /// Whether wavelengths part here, so that a path can go on with one only.

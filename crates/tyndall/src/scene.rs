@@ -1,6 +1,10 @@
 //! The resolved, immutable world that a render reads: arrays and typed ids, made once.
 
+mod lit;
+
 use std::sync::Arc;
+
+pub use lit::Lit;
 
 use crate::{
     camera::Camera,
@@ -8,7 +12,7 @@ use crate::{
     granular::Granular,
     light::{AreaLight, Light, LightId, LightTable},
     lpe::{Automaton, Names, PathLayer, automaton::BuildError},
-    material::{Index, Material},
+    material::Material,
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
     shape::{Distances, Geometry, Hit, Interaction, ObjectId, Shape},
@@ -35,6 +39,13 @@ pub struct Object {
     pub body: Option<Member>,
     /// What it is among grains, if it has to do with them.
     pub granular: Option<Granular>,
+}
+
+impl Object {
+    /// Whether a medium is on one of its sides.
+    fn bounds(&self, medium: MediumId) -> bool {
+        self.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium))
+    }
 }
 
 /// The lights that the primitives of an object are.
@@ -80,8 +91,12 @@ struct Facts {
     has_null_surfaces: bool,
     /// By object: whether it lets all light pass, if that is all there is to know of what light can pass.
     open: Option<Vec<bool>>,
-    /// By medium: whether a straight line from inside it can reach a light.
-    lit: Vec<bool>,
+    /// By medium: how light samples from inside it reach lights.
+    lit: Vec<Lit>,
+    /// By object: the index of a smooth wall that light samples may bend at \[1\].
+    walls: Vec<Option<f32>>,
+    /// By medium: the ball that holds it and that alone bounds it, if that is such a wall.
+    only_wall: Vec<Option<ObjectId>>,
     /// By medium: a box that it does not reach out of.
     extent: Vec<Bounds>,
     /// By medium: the greatest clearance in it [length].
@@ -152,6 +167,7 @@ impl Scene {
         let Self { camera, geometry, objects, materials, lights, .. } = &self;
         let objects: Vec<_> =
             (0..).map(ObjectId).zip(objects.iter()).filter(|(_, object)| object.granular != Some(absent)).collect();
+        let walls = lit::walls(&self, &bodies);
         let is_open = |(_, o): &(ObjectId, &Object)| may_be_open(&materials[o.material.0 as usize], materials);
         let media = || (0..).map(MediumId).take(self.media.len());
         let extent: Vec<_> = media().map(|medium| extent(medium, camera, geometry, &objects, &bodies)).collect();
@@ -161,8 +177,18 @@ impl Scene {
             open: self.open_surfaces(&objects).filter(|_| bodies.is_empty()),
             lit: media()
                 .zip(&extent)
-                .map(|(m, extent)| opens_straight(m, &bodies) || can_be_lit(m, extent, &objects, materials, lights))
+                .map(|(m, extent)| {
+                    if lit::opens_straight(m, &bodies) || lit::can_be_lit(m, extent, &objects, materials, lights) {
+                        Lit::Straight
+                    } else if objects.iter().any(|(id, o)| o.bounds(m) && walls[id.0 as usize].is_some()) {
+                        Lit::Bent
+                    } else {
+                        Lit::Never
+                    }
+                })
                 .collect(),
+            only_wall: media().map(|m| lit::only_wall(m, &objects, &walls, geometry)).collect(),
+            walls,
             deepest: extent.iter().map(|extent| deepest(extent, geometry)).collect(),
             extent,
             bare_lights: bare_lights(lights),
@@ -361,11 +387,29 @@ impl Scene {
         self.facts.has_null_surfaces
     }
 
-    /// Whether sampling lights from inside a medium can ever succeed: not where every way out leads through glass and
-    /// no light is within.
+    /// The whole surface of a medium, if it is one ball at which light samples may bend.
+    #[inline]
+    pub fn only_wall(&self, medium: MediumId) -> Option<ObjectId> {
+        self.facts.only_wall[medium.0 as usize]
+    }
+
+    /// Whether sampling lights straight from inside a medium can ever succeed: not where every way out leads through glass
+    /// and no light is within.
     #[inline]
     pub fn light_can_reach(&self, medium: Option<MediumId>) -> bool {
-        medium.is_none_or(|id| self.facts.lit[id.0 as usize])
+        self.lit(medium) == Lit::Straight
+    }
+
+    /// How light samples from inside a medium reach lights.
+    #[inline]
+    pub fn lit(&self, medium: Option<MediumId>) -> Lit {
+        medium.map_or(Lit::Straight, |id| self.facts.lit[id.0 as usize])
+    }
+
+    /// The index inside an object over that outside \[1\], if light samples may bend at its surface.
+    #[inline]
+    pub fn wall(&self, object: ObjectId) -> Option<f32> {
+        self.facts.walls[object.0 as usize]
     }
 }
 
@@ -375,35 +419,6 @@ const FEW_SURFACES: usize = 1000;
 const SMALL_LAMP: f32 = 0.2;
 /// The depth of a medium from which on walks serve it better than collisions aimed at its lamps \[mean free paths\].
 const THIN: f32 = 8.0;
-
-/// A medium is lit directly if it has an open boundary (one without a material, or with holes), if it fills the space of a
-/// light, or if it reaches as far as we know.
-fn can_be_lit(
-    medium: MediumId,
-    extent: &Bounds,
-    objects: &[(ObjectId, &Object)],
-    materials: &[Material],
-    lights: &LightTable,
-) -> bool {
-    let touches = |o: &Object| o.interface.is_some_and(|i| i.inside == Some(medium) || i.outside == Some(medium));
-    objects.iter().any(|(_, o)| touches(o) && may_be_open(&materials[o.material.0 as usize], materials))
-        || *extent == Bounds::EVERYTHING
-        || extent.is_empty()
-        || lights.lights.iter().filter_map(Light::bounds).any(|b| overlap(extent, &b))
-}
-
-/// Whether light may leave the bodies of a medium straight: unless each body of the scene has a surface that bends it
-/// against vacuum and against each other body.
-fn opens_straight(medium: MediumId, bodies: &[Body]) -> bool {
-    let index = |body: &Body| match body.index {
-        Some(Index::Constant(eta)) if eta != 1.0 => Some(eta),
-        _ => None,
-    };
-    let mut indices: Vec<_> = bodies.iter().map(index).collect();
-    indices.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    let bends = indices.iter().all(Option::is_some) && indices.windows(2).all(|w| w[0] != w[1]);
-    !bends && bodies.iter().any(|body| body.medium == Some(medium))
-}
 
 /// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
 /// in the world itself.

@@ -51,7 +51,8 @@ impl VolPath {
         while path.step(scene, self, sink, tally) == Status::Alive {
             if let Some(mut walker) = path.begin_walk(self) {
                 let phase = &scene.medium(walker.medium).phase;
-                let end = walker.alone(phase, |announced| path.sample_announced(scene, announced, phase, sink, tally));
+                let end = walker
+                    .alone(phase, |announced| path.sample_announced(scene, self, (announced, phase), sink, tally));
                 path.end_walk(&walker, end, phase, sink, tally);
             }
         }
@@ -91,7 +92,7 @@ impl<S: Sink> Crew for Estimates<'_, S> {
     }
 
     fn light(&mut self, (sample, path): &Self::Member, announced: &Announced, phase: &Phase, tally: &mut Tally) {
-        path.sample_announced(self.scene, announced, phase, &mut self.sinks[*sample], tally);
+        path.sample_announced(self.scene, self.settings, (announced, phase), &mut self.sinks[*sample], tally);
     }
 
     fn end_walk(&mut self, member: &mut Self::Member, walker: &Walker, end: End, phase: &Phase, tally: &mut Tally) {

@@ -2,6 +2,7 @@
 
 pub mod analog;
 pub mod apart;
+mod bent;
 mod following;
 mod next_event;
 pub mod pool;

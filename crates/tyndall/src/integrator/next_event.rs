@@ -6,16 +6,35 @@ use crate::{
     light::Reference,
     math::{Bounds, Ray, Vec2, Vec3},
     medium::{Inside, Within},
-    path::{Attempt, History, Path, PathWeights, Source, Turn, Vertex, event::Aimed, shadow},
+    path::{Attempt, History, Path, PathWeights, Sight, Source, Turn, Vertex, event::Aimed, shadow},
     phase::Phase,
     scene::Scene,
     tally::Tally,
 };
 
 impl Path {
+    /// A light sample, straight or through a wall.
+    #[inline]
+    #[allow(clippy::too_many_arguments)] // those of a light sample
+    pub(super) fn look_for_light(
+        &self,
+        scene: &Scene,
+        settings: &VolPath,
+        vertex: &Vertex,
+        how: (&Attempt, [f32; 3]),
+        of: (&PathWeights, &History),
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
+        match Self::sight(scene, vertex) {
+            Sight::Straight => self.sample_light(scene, vertex, how, of, sink, tally),
+            Sight::Behind | Sight::Past(_) => self.sample_light_bent(scene, settings, vertex, how, of, sink, tally),
+        }
+    }
+
     /// Next event estimation: one light, one direction, one shadow ray.
     #[inline]
-    pub(super) fn sample_light(
+    fn sample_light(
         &self,
         scene: &Scene,
         vertex: &Vertex,
@@ -32,7 +51,8 @@ impl Path {
         if f.is_zero() {
             return;
         }
-        let Some(odds) = attempt.towards(scene, reference.p, sample.dir) else { return };
+        let nearer = attempt.towards(reference.p, sample.dir).and_then(|attempt| attempt.closer(scene, reference.p));
+        let Some(Attempt { odds, supposed, .. }) = nearer else { return };
         let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
         let origin = vertex.shadow_origin(sample.dir);
         let mut proxied_within;
@@ -53,7 +73,6 @@ impl Path {
             shadow::transmittance(scene, origin, sample.dir, &sample.target, (inside, within), wavelengths, tally);
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
-            let supposed = attempt.supposed;
             let pdf = probability * sample.pdf;
             let weight = weights.light_sample([supposed * pdf, pdf], scatter_pdf, transmittance);
             let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
@@ -67,8 +86,8 @@ impl Path {
     pub fn sample_announced(
         &self,
         scene: &Scene,
-        announced: &Announced,
-        phase: &Phase,
+        settings: &VolPath,
+        (announced, phase): (&Announced, &Phase),
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
@@ -80,7 +99,7 @@ impl Path {
         sink.turned(&mut history, Turn::Medium(medium), announced.collisions - 1);
         let numbers = [rng.next_1d(), rng.next_1d(), rng.next_1d()];
         let vertex = Vertex::Medium { p, dir, medium, phase };
-        self.sample_light(scene, &vertex, (&attempt, numbers), (&weights, &history), sink, tally);
+        self.look_for_light(scene, settings, &vertex, (&attempt, numbers), (&weights, &history), sink, tally);
     }
 
     /// The medium, and the bodies, that a ray from `vertex` towards `dir` starts in.

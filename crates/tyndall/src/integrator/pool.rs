@@ -7,7 +7,12 @@ use super::walk::{
     Announced, End, Walker,
     together::{News, WIDTH, Walks},
 };
-use crate::{medium::MediumId, phase::Phase, scene::Scene, tally::Tally};
+use crate::{
+    medium::MediumId,
+    phase::Phase,
+    scene::{Lit, Scene},
+    tally::Tally,
+};
 
 /// Paths under way at once: enough that walks rarely wait for others, and few enough for the cache.
 const PATHS: usize = 128;
@@ -39,7 +44,7 @@ struct Pool<M> {
 /// Follows all of `members` to their end.
 pub fn follow<C: Crew>(scene: &Scene, crew: &mut C, members: impl IntoIterator<Item = C::Member>, tally: &mut Tally) {
     let walks = (0..scene.media.len()).map(|i| MediumId(i as u32));
-    let lit = |id| std::iter::once(scene).chain(scene.proxied()).any(|world| world.light_can_reach(Some(id)));
+    let lit = |id| std::iter::once(scene).chain(scene.proxied()).any(|world| world.lit(Some(id)) != Lit::Never);
     let walks = walks.map(|id| Walks::new(id, lit(id))).collect();
     let mut pool = Pool { members: Vec::with_capacity(PATHS), free: Vec::new(), walks };
     let mut waiting = members.into_iter();

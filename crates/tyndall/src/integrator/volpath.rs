@@ -2,9 +2,11 @@
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
 use crate::{
+    bend::Goal,
+    light::Reference,
     material::Material,
     medium::{Inside, MediumId, Skin},
-    path::{Attempt, Event, History, Path, Source, Turn, Vertex},
+    path::{Attempt, Event, History, Path, Sight, Source, Turn, Vertex},
     scene::Scene,
     shape::Interaction,
     spectrum::{Lanes, Wavelengths},
@@ -116,7 +118,7 @@ impl Path {
     ) -> Status {
         match event {
             Event::Escape => {
-                self.find_environment(scene, sink);
+                self.find_environment(scene, sink, tally);
                 Status::Done
             }
             Event::Surface(mut hit) => {
@@ -130,7 +132,7 @@ impl Path {
                         return Status::Alive;
                     }
                     (Skin::Open, _) | (Skin::Written, Material::Null) => {
-                        self.find_emitter(scene, &hit, sink);
+                        self.find_emitter(scene, &hit, sink, tally);
                         self.cross(scene, &hit);
                         return Status::Alive;
                     }
@@ -142,7 +144,7 @@ impl Path {
                         (material.bsdf_between(eta, &(&hit).into(), &self.wavelengths), disperses)
                     }
                 };
-                self.find_emitter(scene, &hit, sink);
+                self.find_emitter(scene, &hit, sink, tally);
                 tally.surface_vertices += 1;
                 let vertex = Vertex::met(scene, hit, bsdf, self.ray.dir, relief);
                 self.scatter(scene, settings, &vertex, (disperses, Attempt::CERTAIN), sink, tally)
@@ -173,14 +175,14 @@ impl Path {
     }
 
     /// Light from infinity.
-    fn find_environment(&self, scene: &Scene, sink: &mut impl Sink) {
+    fn find_environment(&self, scene: &Scene, sink: &mut impl Sink, tally: &mut Tally) {
         for id in &scene.lights.environments {
             let light = scene.lights.get(*id);
             let le = light.le_from_infinity(self.last_vertex.p, self.ray.dir, &self.wavelengths);
             if !le.is_zero() {
                 let weight = self.weights.emission(|| {
-                    scene.lights.probability(&self.last_vertex, *id)
-                        * light.pdf_towards(&self.last_vertex, self.ray.dir)
+                    let straight = |from: &Reference| light.pdf_towards(from, self.ray.dir);
+                    self.light_density(scene, *id, &Goal::Infinity(self.ray.dir), straight, tally)
                 });
                 sink.add(weight * le, &self.history, None, Source::Sky(*id));
             }
@@ -189,12 +191,13 @@ impl Path {
 
     /// Light from the surface that was hit.
     #[inline]
-    fn find_emitter(&self, scene: &Scene, hit: &Interaction, sink: &mut impl Sink) {
+    fn find_emitter(&self, scene: &Scene, hit: &Interaction, sink: &mut impl Sink, tally: &mut Tally) {
         let Some((id, light)) = scene.light_at(hit) else { return };
         let le = light.le(hit.ng, -self.ray.dir, || hit.into(), &self.wavelengths);
         if !le.is_zero() {
             let weight = self.weights.emission(|| {
-                scene.lights.probability(&self.last_vertex, id) * light.pdf(&self.last_vertex, hit.p, hit.ng)
+                let goal = Goal::Point { p: hit.p, ng: hit.ng };
+                self.light_density(scene, id, &goal, |from| light.pdf(from, hit.p, hit.ng), tally)
             });
             sink.add(weight * le, &self.history, None, Source::Light(id));
         }
@@ -263,7 +266,8 @@ impl Path {
         let reference = vertex.reference();
         if light.is_made() && vertex.can_use_light_samples() {
             let numbers = self.sampler.light(self.history.vertices);
-            self.sample_light(scene, vertex, (&light, numbers), (&self.weights, &self.history), sink, tally);
+            let of = (&self.weights, &self.history);
+            self.look_for_light(scene, settings, vertex, (&light, numbers), of, sink, tally);
         }
         if !self.weights.throughput().is_finite() {
             sink.add(self.weights.beta, &self.history, None, Source::Fault); // the film counts and locates it
@@ -282,10 +286,14 @@ impl Path {
         if disperses && scattered.eta != 1.0 {
             self.part_wavelengths(scene);
         }
-        if scattered.specular {
-            self.weights.scatter_specular(scattered.weight);
-        } else {
+        if !scattered.specular {
             self.weights.scatter(scattered.weight, scattered.pdf, light.supposed);
+            self.sight = Self::sight(scene, vertex);
+        } else if let Some(passed) = self.passes(scene, vertex, &scattered) {
+            self.weights.bend(scattered.weight, scattered.pdf);
+            self.sight = Sight::Past(passed);
+        } else {
+            self.weights.scatter_specular(scattered.weight);
         }
         self.history.eta_scale *= scattered.eta * scattered.eta;
         self.history.scattered(scattered.specular);

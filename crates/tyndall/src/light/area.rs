@@ -258,6 +258,11 @@ impl AreaLight {
         }
     }
 
+    /// Whether light sampling from `from` can find a point `p` with unit normal `ng`.
+    pub fn shows(&self, from: Vec3, p: Vec3, ng: Vec3) -> bool {
+        self.shape.height(from).is_none_or(|h| h != 0.0) && (self.two_sided || ng.dot(p - from) < 0.0)
+    }
+
     /// A direction towards the emitter.
     #[inline]
     pub fn sample(&self, from: &Reference, u: Vec2, wavelengths: &Wavelengths) -> Option<LightSample> {

@@ -39,7 +39,25 @@ impl LightTable {
             (0, _) => None,
             (1, _) => Some((LightId(0), 1.0)),
             (_, Some(many)) => many.choose(from, u),
-            _ => self.choose_weighed(from, u),
+            _ => self.choose_weighed(u, |light| weight(light, from)),
+        }
+    }
+
+    /// The same for light samples through walls that bend them: of a few lights only one for which that is worth while.
+    #[inline]
+    pub fn choose_bending(&self, from: &Reference, u: f32) -> Option<(LightId, f32)> {
+        match (self.lights.len(), &self.many) {
+            (0 | 1, _) | (_, Some(_)) => self.choose(from, u),
+            _ => self.choose_weighed(u, |light| bending_weight(light, from)),
+        }
+    }
+
+    /// The probability with which [`Self::choose_bending`] takes `id`.
+    #[inline]
+    pub fn bending_probability(&self, from: &Reference, id: LightId) -> f32 {
+        match (self.lights.len(), &self.many) {
+            (0 | 1, _) | (_, Some(_)) => self.probability(from, id),
+            _ => self.weighed_probability(id, |light| bending_weight(light, from)),
         }
     }
 
@@ -49,18 +67,20 @@ impl LightTable {
         match (self.lights.len(), &self.many) {
             (1, _) => 1.0,
             (_, Some(many)) => many.probability(from, id),
-            _ => {
-                let total: f32 = self.lights.iter().map(|l| weight(l, from)).sum();
-                if total > 0.0 { weight(self.get(id), from) / total } else { 0.0 }
-            }
+            _ => self.weighed_probability(id, |light| weight(light, from)),
         }
     }
 
-    fn choose_weighed(&self, from: &Reference, u: f32) -> Option<(LightId, f32)> {
+    fn weighed_probability(&self, id: LightId, weight: impl Fn(&Light) -> f32) -> f32 {
+        let total: f32 = self.lights.iter().map(&weight).sum();
+        if total > 0.0 { weight(self.get(id)) / total } else { 0.0 }
+    }
+
+    fn choose_weighed(&self, u: f32, weight: impl Fn(&Light) -> f32) -> Option<(LightId, f32)> {
         let mut weights = [0.0; WEIGHED];
         let mut total = 0.0;
         for (place, light) in weights.iter_mut().zip(&self.lights) {
-            *place = weight(light, from);
+            *place = weight(light);
             total += *place;
         }
         if total <= 0.0 {
@@ -85,4 +105,9 @@ impl LightTable {
 #[inline]
 fn weight(light: &Light, from: &Reference) -> f32 {
     light.importance(from.p).min(1e30)
+}
+
+#[inline]
+fn bending_weight(light: &Light, from: &Reference) -> f32 {
+    if light.is_worth_bending() { weight(light, from) } else { 0.0 }
 }

@@ -35,6 +35,7 @@ pub use slide::Slide;
 pub use spot::{Falloff, SpotLight};
 
 use crate::{
+    bend::Goal,
     math::{Bounds, Vec2, Vec3},
     spectrum::{Lanes, Wavelengths},
 };
@@ -177,6 +178,39 @@ impl Light {
             | Self::Projector(_)
             | Self::Beam(_) => true,
             Self::Constant(_) | Self::Map(_) | Self::Portal(_) => false,
+        }
+    }
+
+    /// Whether light samples of it through walls that bend light are worth while: not of a sky that is the same everywhere,
+    /// which paths find as well, nor through a portal, nor of what only light sampling finds.
+    pub fn is_worth_bending(&self) -> bool {
+        match self {
+            Self::Area(_) => !self.is_hidden(),
+            Self::Map(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Whether light leaves a goal that is sampled of it towards `dir`.
+    pub fn shines_towards(&self, goal: &Goal, dir: Vec3) -> bool {
+        match (self, goal) {
+            (Self::Area(light), Goal::Point { ng, .. }) => light.two_sided || ng.dot(dir) > 0.0,
+            _ => true,
+        }
+    }
+
+    /// Density with which [`Self::sample`] finds a goal: over the area across a ray along `onward` that arrives there
+    /// [1/length²], or over the solid angle of its directions if it is infinitely far away [1/sr].
+    pub fn pdf_across(&self, from: &Reference, goal: &Goal, onward: Vec3) -> f32 {
+        match (self, *goal) {
+            (Self::Area(light), Goal::Point { p, ng }) if light.shows(from.p, p, ng) => {
+                let straight = p - from.p;
+                let d2 = straight.length_squared();
+                let turned = (straight.dot(ng) / onward.dot(ng)).abs() / d2.sqrt();
+                light.pdf(from, p, ng) * turned / d2
+            }
+            (_, Goal::Infinity(dir)) => self.pdf_towards(from, dir),
+            _ => 0.0,
         }
     }
 

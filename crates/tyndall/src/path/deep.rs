@@ -1,6 +1,6 @@
 //! How a path enters a walk deep inside a medium, and how it comes back. See [`crate::integrator::walk`].
 
-use super::{Event, Path, PathWeights, Turn};
+use super::{Event, Path, PathWeights, Sight, Turn};
 use crate::{
     integrator::{
         VolPath,
@@ -12,7 +12,7 @@ use crate::{
     medium::Inside,
     phase::Phase,
     sampling::Rng,
-    scene::Scene,
+    scene::{Lit, Scene},
     spectrum::Lanes,
     tally::Tally,
 };
@@ -93,6 +93,8 @@ pub struct Attempt {
     ball: Ball,
     /// How far another is worth to look for, where this one may be loose [length].
     closer: f32,
+    /// The probability where no medium is between \[1\].
+    share: f32,
     /// The least `σ_t` of all lanes [1/length].
     sigma_min: f32,
 }
@@ -100,7 +102,7 @@ pub struct Attempt {
 impl Attempt {
     /// As at every surface.
     pub const CERTAIN: Self =
-        Self { odds: 1.0, supposed: 1.0, draw: 0.0, ball: Ball::NONE, closer: 0.0, sigma_min: 0.0 };
+        Self { odds: 1.0, supposed: 1.0, draw: 0.0, ball: Ball::NONE, closer: 0.0, share: 1.0, sigma_min: 0.0 };
     /// As in a medium that no light reaches: what paths run into there counts in full.
     pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, draw: 1.0, ..Self::CERTAIN };
 
@@ -110,14 +112,25 @@ impl Attempt {
         self.draw <= self.odds
     }
 
-    /// The probability with which a light along `dir` from `p` is looked for \[1\]: no more than the transmittance as far as a ball
-    /// reaches. `None` if it is not.
+    /// The same once it is known that the light is along `dir` from `p`: no more likely than the transmittance as far as the ball
+    /// reaches. `None` if it is not made.
     #[inline]
-    pub fn towards(&self, scene: &Scene, p: Vec3, dir: Vec3) -> Option<f32> {
-        let lowered =
-            |odds: f32, way: f32| Some(light_odds(self.sigma_min * way).min(odds)).filter(|o| self.draw <= *o);
-        let odds = lowered(self.odds, self.ball.reach(p, dir))?;
-        if self.closer == 0.0 { Some(odds) } else { lowered(odds, Ball::around(scene, p, self.closer).radius) }
+    #[must_use]
+    pub fn towards(&self, p: Vec3, dir: Vec3) -> Option<Self> {
+        self.lowered(self.ball.reach(p, dir))
+    }
+
+    /// The same with another ball around `p`, where the one that was known may be loose.
+    #[inline]
+    #[must_use]
+    pub fn closer(&self, scene: &Scene, p: Vec3) -> Option<Self> {
+        if self.closer == 0.0 { Some(*self) } else { self.lowered(Ball::around(scene, p, self.closer).radius) }
+    }
+
+    #[inline]
+    fn lowered(&self, way: f32) -> Option<Self> {
+        let odds = light_odds(self.share, self.sigma_min * way).min(self.odds);
+        (self.draw <= odds).then_some(Self { odds, ..*self })
     }
 }
 
@@ -158,7 +171,7 @@ impl Path {
     /// Whether light is sampled at a collision about whose surroundings nothing is known.
     #[inline]
     pub(crate) fn attempt(&self, scene: &Scene) -> Attempt {
-        if scene.light_can_reach(self.inside.id()) { Attempt::CERTAIN } else { Attempt::NONE }
+        if scene.lit(self.inside.id()) == Lit::Never { Attempt::NONE } else { Attempt::CERTAIN }
     }
 
     /// At a collision: how far the nearest surface is, and with that whether light is sampled.
@@ -172,8 +185,15 @@ impl Path {
         let around = Ball::around(scene, p, most);
         let ball = self.around.behind.touching(scene, p, around, most);
         self.around.ball = ball;
-        let (odds, draw) = (depths.odds(around.radius), self.sampler.rng.next_positive());
-        Attempt { odds, supposed: 1.0, draw, ball, closer: 0.0, sigma_min: depths.sigma_min }
+        Attempt {
+            odds: depths.odds(around.radius),
+            supposed: depths.share,
+            draw: self.sampler.rng.next_positive(),
+            ball,
+            closer: 0.0,
+            share: depths.share,
+            sigma_min: depths.sigma_min,
+        }
     }
 
     /// A light sample that a walk has announced, and what the path weighs there; `None` if it is not made: the ball of the
@@ -194,6 +214,7 @@ impl Path {
             draw,
             ball: self.around.ball,
             closer: depths.farthest(scene),
+            share: depths.share,
             sigma_min: depths.sigma_min,
         };
         let settled = depths.settle(announced.collisions, announced.length);
@@ -221,7 +242,8 @@ impl Path {
             ball,
             mean_free_path: 1.0 / depths.sigma_t,
             sigma_min: depths.sigma_min,
-            lit: depths.lit,
+            share: depths.share,
+            lit: depths.lit != Lit::Never,
             collisions: 0,
             limit: depths.limit.min(allowed),
             length: 0.0,
@@ -249,6 +271,7 @@ impl Path {
                     let odds = depths.odds(self.around.ball.room(walker.p));
                     self.weights.scatter(Lanes::ONE, phase.eval(walker.cos_theta), odds);
                     self.last_vertex = Reference { p: walker.p, normal: None };
+                    self.sight = Sight::from(depths.lit);
                 }
                 Left::Flight(walker.flight)
             }

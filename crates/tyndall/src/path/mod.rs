@@ -6,6 +6,7 @@ pub mod event;
 pub mod history;
 mod passage;
 pub mod shadow;
+pub mod sight;
 pub mod turn;
 pub mod vertex;
 pub mod weights;
@@ -13,6 +14,7 @@ pub mod weights;
 pub use deep::{Attempt, Surroundings};
 pub use event::Event;
 pub use history::History;
+pub use sight::Sight;
 pub use turn::{Kind, Source, Turn};
 pub use vertex::Vertex;
 pub use weights::PathWeights;
@@ -55,6 +57,8 @@ pub struct Path {
     pub stage: Stage,
     /// The last vertex from which a light could have been sampled.
     pub last_vertex: Reference,
+    /// How it was sampled.
+    pub sight: Sight,
 }
 
 impl Path {
@@ -74,6 +78,7 @@ impl Path {
             history: History::default(),
             stage: Stage::default(),
             last_vertex: Reference { p: ray.origin, normal: None },
+            sight: Sight::Straight,
         }
     }
 }

@@ -119,6 +119,13 @@ impl PathWeights {
         self.r_l = None;
     }
 
+    /// The path took the Dirac lobe that light samples bend by, with this probability in each lane.
+    #[inline]
+    pub fn bend(&mut self, weight: Lanes, probability: f32) {
+        self.beta *= weight;
+        self.r_l = self.r_l.map(|r_l| r_l * (1.0 / probability));
+    }
+
     /// The wavelengths part here: the path goes on with the hero alone, which alone could have come this way. In the
     /// film's mean over four lanes it stands for all of them. To be called once a path.
     pub fn keep_hero_only(&mut self, hero: usize) {

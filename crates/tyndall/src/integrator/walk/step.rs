@@ -7,10 +7,11 @@ use crate::{
     sampling::rng::{positive, unit},
 };
 
-/// The probability of a light sample where the transmittance to any light is at most `exp(−tau)`.
+/// The probability of a light sample where the transmittance to any light is at most `exp(−tau)`, and where it is sampled with
+/// probability `share` at the surface.
 #[inline(always)]
-pub(crate) fn light_odds(tau: f32) -> f32 {
-    fast::exp(-tau).min(1.0)
+pub(crate) fn light_odds(share: f32, tau: f32) -> f32 {
+    share * fast::exp(-tau).min(1.0)
 }
 
 /// What [`collide`] says when there is nothing to say.
@@ -46,7 +47,7 @@ pub(super) fn collide<const LIT: bool>(w: &mut Walker, cosine: impl Fn(f32) -> f
     let p = w.p + w.dir * w.flight;
     let room = w.ball.radius - length(p - w.ball.centre);
     let stays = room > 0.0;
-    let is_lit = LIT && positive(u_light) <= light_odds(w.sigma_min * room.max(0.0));
+    let is_lit = LIT && positive(u_light) <= light_odds(w.share, w.sigma_min * room.max(0.0));
     let is_due = w.collisions + 1 >= w.limit;
     let cos_theta = cosine(unit(u_cosine));
     let dir = deflect(w.dir, cos_theta, unit(u_azimuth));

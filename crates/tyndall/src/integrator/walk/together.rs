@@ -137,6 +137,7 @@ struct Lanes {
     radius: [f32; WIDTH],
     mean_free_path: [f32; WIDTH],
     sigma_min: [f32; WIDTH],
+    share: [f32; WIDTH],
     length: [f32; WIDTH],
     flight: [f32; WIDTH],
     cos_theta: [f32; WIDTH],
@@ -170,6 +171,7 @@ impl Lanes {
             ball: Ball { centre: vector(&self.centre), radius: self.radius[i] },
             mean_free_path: self.mean_free_path[i],
             sigma_min: self.sigma_min[i],
+            share: self.share[i],
             lit,
             collisions: self.collisions[i],
             limit: self.limit[i],
@@ -189,6 +191,7 @@ impl Lanes {
         self.radius[i] = walker.ball.radius;
         self.mean_free_path[i] = walker.mean_free_path;
         self.sigma_min[i] = walker.sigma_min;
+        self.share[i] = walker.share;
         self.length[i] = walker.length;
         self.flight[i] = walker.flight;
         self.cos_theta[i] = walker.cos_theta;
@@ -221,6 +224,7 @@ mod tests {
             rng: Rng::for_sample((number, 0), 0, 1),
             ball: Ball { centre: Vec3::new(1.0, 2.0, 3.0), radius: 2.0 + number as f32 * 0.1 },
             mean_free_path: 0.3,
+            share: 0.5 + 0.5 * (number % 2) as f32,
             sigma_min: 2.0,
             lit,
             collisions: 0,
