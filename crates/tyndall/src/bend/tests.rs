@@ -1,3 +1,5 @@
+//! The search for the bend of a way against closed forms, and the spread of ways against their neighbours.
+
 use super::*;
 
 /// Indices on the side of `x` over those beyond: water, glass and diamond seen from inside, no step, and glass from outside.

@@ -14,7 +14,7 @@
 //! full. So what the search does not find costs variance and nothing else. Lights without extent, which no path runs into, are left
 //! alone for that reason.
 
-use super::{VolPath, volpath::Sink};
+use super::volpath::Sink;
 use crate::{
     bend::{Bend, Goal, Wall},
     bsdf::fresnel,
@@ -80,6 +80,22 @@ impl Scene {
         let eta = if faces { 1.0 / index } else { index };
         Some(Way { part, bend: wall.bend(from.p, eta, goal, from.reach)?, eta, faces })
     }
+
+    /// The density with which a light sample finds the goal of a path that has passed a wall, if it would have gone the same way
+    /// [1/sr].
+    #[inline(never)]
+    fn light_density_bent(&self, id: LightId, goal: &Goal, passed: &Passed, tally: &mut Tally) -> f32 {
+        let (light, from) = (self.lights.get(id), Reference { p: passed.start.p, normal: None });
+        if !light.is_worth_bending() {
+            return 0.0;
+        }
+        match self.bend(&passed.start, goal, tally) {
+            Some((Way { bend, .. }, ..)) if bend.dir.distance_squared(passed.dir) < SAME * SAME => {
+                self.lights.bending_probability(&from, id) * light.pdf_across(&from, goal, bend.onward) / bend.spread
+            }
+            _ => 0.0,
+        }
+    }
 }
 
 impl Path {
@@ -88,17 +104,12 @@ impl Path {
     pub(super) fn sample_light_bent(
         &self,
         scene: &Scene,
-        settings: &VolPath,
         vertex: &Vertex,
         (attempt, [u_choice, u, v]): (&Attempt, [f32; 3]),
         (weights, history): (&PathWeights, &History),
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
-        // The wall is a vertex too.
-        if settings.max_depth.is_some_and(|limit| history.depth() + 1 >= limit) {
-            return;
-        }
         let (reference, Some(start)) = (vertex.reference(), self.start(vertex.reference().p)) else { return };
         let Some(Attempt { odds, supposed, .. }) = attempt.closer(scene, start.p) else { return };
         let Some((id, probability)) = scene.lights.choose_bending(&reference, u_choice) else { return };
@@ -182,21 +193,7 @@ impl Path {
         match &self.sight {
             Sight::Straight => scene.lights.probability(&self.last_vertex, id) * straight(&self.last_vertex),
             Sight::Behind => 0.0,
-            Sight::Past(passed) => self.bent_density(scene, id, goal, passed, tally),
-        }
-    }
-
-    #[inline(never)]
-    fn bent_density(&self, scene: &Scene, id: LightId, goal: &Goal, passed: &Passed, tally: &mut Tally) -> f32 {
-        let (light, from) = (scene.lights.get(id), Reference { p: passed.start.p, normal: None });
-        if !light.is_worth_bending() {
-            return 0.0;
-        }
-        match scene.bend(&passed.start, goal, tally) {
-            Some((Way { bend, .. }, ..)) if bend.dir.distance_squared(passed.dir) < SAME * SAME => {
-                scene.lights.bending_probability(&from, id) * light.pdf_across(&from, goal, bend.onward) / bend.spread
-            }
-            _ => 0.0,
+            Sight::Past(passed) => scene.light_density_bent(id, goal, passed, tally),
         }
     }
 }

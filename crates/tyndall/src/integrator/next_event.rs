@@ -28,7 +28,9 @@ impl Path {
     ) {
         match Self::sight(scene, vertex) {
             Sight::Straight => self.sample_light(scene, vertex, how, of, sink, tally),
-            Sight::Behind | Sight::Past(_) => self.sample_light_bent(scene, settings, vertex, how, of, sink, tally),
+            // The wall is a vertex too.
+            Sight::Behind | Sight::Past(_) if settings.max_depth.is_some_and(|limit| of.1.depth() + 1 >= limit) => {}
+            Sight::Behind | Sight::Past(_) => self.sample_light_bent(scene, vertex, how, of, sink, tally),
         }
     }
 
