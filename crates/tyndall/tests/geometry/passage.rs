@@ -23,9 +23,10 @@ fn placed(meshes: &[Mesh]) -> Geometry {
 fn with_one(meshes: &[Mesh], object: usize, prim: usize) -> Geometry {
     let only = |(i, mesh): (usize, &Mesh)| {
         let far = Mesh { positions: vec![Vec3::splat(1e6), Vec3::splat(2e6), Vec3::X * 1e6], ..Mesh::default() };
-        match i == object {
-            true => Mesh { indices: vec![mesh.indices[prim]], ..mesh.clone() },
-            false => Mesh { indices: vec![[0, 1, 2]], ..far },
+        if i == object {
+            Mesh { indices: vec![mesh.indices[prim]], ..mesh.clone() }
+        } else {
+            Mesh { indices: vec![[0, 1, 2]], ..far }
         }
     };
     placed(&meshes.iter().enumerate().map(only).collect::<Vec<_>>())
@@ -41,7 +42,7 @@ fn open_surfaces_on_a_way_are_those_that_each_triangle_says() {
         .iter()
         .enumerate()
         .flat_map(|(object, mesh)| (0..mesh.indices.len()).map(move |prim| (object, prim)))
-        .map(|(object, prim)| (object, prim as u32, with_one(&meshes, object, prim as usize)))
+        .map(|(object, prim)| (object, prim as u32, with_one(&meshes, object, prim)))
         .collect();
     let (mut free, mut blocked, mut several) = (0, 0, 0);
     for _ in 0..40_000 {
@@ -83,7 +84,9 @@ fn more_open_surfaces_than_can_be_noted_are_told_of() {
     for (sheets, fit) in [(8, true), (9, false)] {
         let meshes: Vec<_> = (0..sheets).map(|i| sheet(i as f32)).collect();
         let mut builder = GeometryBuilder::new();
-        meshes.into_iter().for_each(|mesh| drop(builder.add_mesh(mesh, &Transform::IDENTITY, false)));
+        for mesh in meshes {
+            builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
+        }
         let geometry = builder.build().unwrap();
         let mut passed = Passed::default();
         assert!(!geometry.occluded_but(&Ray::new(-Vec3::Z, Vec3::Z), 1e3, &vec![true; sheets], &mut passed));
