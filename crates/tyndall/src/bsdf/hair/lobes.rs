@@ -17,7 +17,7 @@ pub(super) struct Widths {
     along: [f32; 3],
     /// Scale of the logistic lobes [rad].
     scale: f32,
-    /// `1/s` over their share within ±π: see [`azimuthal`].
+    /// `1/s` over their share within ±π: see [`Self::azimuthal`].
     round: f32,
     /// Sine and cosine of the tilt of the scales.
     tilt: [f64; 2],
