@@ -257,7 +257,7 @@ fn brightness(scene: &Scene, explicit_grains: Option<u32>, seed: u64) -> (f64, f
 #[test]
 fn few_grains_are_a_medium() {
     const REACH: f64 = 150.0;
-    const PACKS: u64 = 8;
+    const PACKS: u64 = 12;
     const COUNT: u64 = 33_750;
     let mut differences = [0; 2].map(|_| Vec::new());
     let (mut denser, mut total) = (Vec::new(), 0.0);
@@ -289,7 +289,7 @@ fn few_grains_are_a_medium() {
     };
     for (differences, grains) in differences.iter().zip([0, 2]) {
         let (z, error) = z(differences);
-        // Student's t of 7 degrees of freedom exceeds 6 once in 2000 times.
+        // Student's t of 11 degrees of freedom exceeds 6 once in 11,000 times.
         assert!(z.abs() < 6.0 && error < 0.01, "after {grains}: z = {z}, relative error {error}");
     }
     assert!(z(&denser).0.abs() > 6.0, "a tenth more grains is seen: {:?}", z(&denser));
