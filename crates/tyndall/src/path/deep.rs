@@ -196,8 +196,8 @@ impl Path {
         }
     }
 
-    /// A light sample that a walk has announced, and what the path weighs there; `None` if it is not made: the ball of the
-    /// walk may be loose, and what is between the bound that it gave and a closer one plays roulette.
+    /// A light sample that a walk has announced, and what the path weighs there. The ball of the walk may be loose: what
+    /// [`Attempt::towards`] and [`Attempt::closer`] say is still to be asked.
     #[inline]
     pub(crate) fn on_walk(
         &self,

@@ -23,22 +23,18 @@ impl Path {
         let mut passed = Passed::default();
         let wall = scene.geometry.intersect_but(&way, reach, open, &mut passed);
         let end = wall.map_or(reach, |wall| wall.t);
-        let Some(hits) = passed.in_order() else {
+        let Some(surfaces) = passed.surfaces(&scene.geometry, &way) else {
             self.leave_flight(flight);
             return None;
         };
-        let (mut from, mut clear) = (0.0, 0.0);
-        for hit in hits {
-            if hit.t <= clear {
-                continue;
-            }
-            if hit.t >= end || hit.t - from >= flight + scene.rounding(&self.ray, flight) {
+        let mut from = 0.0;
+        for (t, surface) in surfaces {
+            if t >= end || t - from >= flight + scene.rounding(&self.ray, flight) {
                 break;
             }
-            self.pass(hit.t - from);
-            let surface = scene.geometry.interaction(&way, &hit);
+            self.pass(t - from);
             self.cross(scene, &surface);
-            (from, clear) = (hit.t, surface.end_of_error(hit.t, way.dir));
+            from = t;
             flight = self.sample_flight();
         }
         let stop = from + flight + scene.rounding(&self.ray, flight);

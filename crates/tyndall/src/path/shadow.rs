@@ -5,7 +5,7 @@ use crate::{
     math::{Ray, Vec3, rounding::gamma},
     medium::{Inside, Skin, Within},
     scene::Scene,
-    shape::{Hit, Passed, offset_point},
+    shape::{Interaction, Passed, offset_point},
     spectrum::{Lanes, Wavelengths},
     tally::Tally,
 };
@@ -38,8 +38,8 @@ pub fn transmittance(
         if scene.geometry.occluded_but(&ray, t_max, open, &mut passed) {
             return None;
         }
-        if let Some(hits) = passed.in_order() {
-            return through(scene, &ray, t_max, hits, inside, wavelengths);
+        if let Some(surfaces) = passed.surfaces(&scene.geometry, &ray) {
+            return through(scene, ray.dir, t_max, surfaces, inside, wavelengths);
         }
     }
     let mut transmittance = Lanes::ONE;
@@ -82,33 +82,28 @@ pub fn transmittance(
     }
 }
 
-/// The transmittance of a segment that meets these surfaces without a material. One that is within the error of another is
-/// passed with it, as by a ray that leaves there.
+/// The transmittance of a segment of length `t_max` along `dir` that meets these surfaces without a material, at these distances.
 fn through(
     scene: &Scene,
-    ray: &Ray,
+    dir: Vec3,
     t_max: f32,
-    hits: impl Iterator<Item = Hit>,
+    surfaces: impl Iterator<Item = (f32, Interaction)>,
     mut inside: Inside,
     wavelengths: &Wavelengths,
 ) -> Option<Lanes> {
     let mut transmittance = Lanes::ONE;
-    let (mut from, mut clear) = (0.0, 0.0);
-    for hit in hits {
-        if hit.t <= clear {
-            continue;
-        }
+    let mut from = 0.0;
+    for (t, surface) in surfaces {
         if let Some(coefficients) = inside.coefficients() {
-            transmittance *= coefficients.transmittance(hit.t - from);
+            transmittance *= coefficients.transmittance(t - from);
             if transmittance.is_zero() {
                 return None;
             }
         }
-        let surface = scene.geometry.interaction(ray, &hit);
         if let Some(interface) = scene.object(&surface).interface {
-            inside = Inside::of(scene, interface.towards(ray.dir.dot(surface.ng)), wavelengths);
+            inside = Inside::of(scene, interface.towards(dir.dot(surface.ng)), wavelengths);
         }
-        (from, clear) = (hit.t, surface.end_of_error(hit.t, ray.dir));
+        from = t;
     }
     if let Some(coefficients) = inside.coefficients() {
         transmittance *= coefficients.transmittance(t_max - from);

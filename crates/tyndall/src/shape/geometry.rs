@@ -13,7 +13,7 @@ use super::{
     curve::Piece,
     instance::Instance,
     interaction::Point,
-    passage::{Passed, Placed, View, Way},
+    passage::{Passed, Placed, View},
     sphere,
 };
 use crate::math::{Bounds, Ray, Vec2, Vec3};
@@ -157,9 +157,9 @@ impl Geometry {
     /// blocks it. If none does, `passed` holds the hits on those that are open.
     #[inline]
     pub fn occluded_but(&self, ray: &Ray, t_max: f32, open: &[bool], passed: &mut Passed) -> bool {
-        let mut way = Way { limit: t_max, is_blocked: false, open, passed };
-        dispatch!(self.level, simd => self.search::<_, _, true>(simd, ray, &mut way));
-        way.is_blocked
+        let mut view = View { nearest: Nearest::before(t_max), open, passed };
+        dispatch!(self.level, simd => self.search::<_, _, true>(simd, ray, &mut view));
+        view.nearest.found()
     }
 
     /// The nearest surface with `0 < t < t_max` that is not `open`; `passed` holds those hits before `t_max` on open ones that the

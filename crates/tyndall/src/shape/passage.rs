@@ -1,9 +1,10 @@
 //! What a ray passes on its way: surfaces that are open, all of them in one search, where a ray for each would begin anew.
 
 use super::{
-    Hit, ObjectId,
+    Geometry, Hit, Interaction, ObjectId,
     bvh::traverse::{Met, Nearest},
 };
+use crate::math::Ray;
 
 /// Most surfaces that are noted on a way.
 const MOST: usize = 8;
@@ -32,6 +33,22 @@ impl Passed {
         Some(hits.iter().map(Nearest::hit))
     }
 
+    /// The surfaces in that order, with their distances. One that is within the error of another is passed with it, as by a ray
+    /// that leaves there.
+    #[inline]
+    pub fn surfaces(&mut self, geometry: &Geometry, ray: &Ray) -> Option<impl Iterator<Item = (f32, Interaction)>> {
+        let mut clear = 0.0;
+        let hits = self.in_order()?;
+        Some(hits.filter_map(move |hit| {
+            if hit.t <= clear {
+                return None;
+            }
+            let surface = geometry.interaction(ray, &hit);
+            clear = surface.end_of_error(hit.t, ray.dir);
+            Some((hit.t, surface))
+        }))
+    }
+
     #[inline(always)]
     fn note(&mut self, hit: Nearest) {
         // A packet that is not full repeats its last triangle.
@@ -43,36 +60,6 @@ impl Passed {
             *place = hit;
         }
         self.len += 1;
-    }
-}
-
-/// A way that is free so far.
-pub(super) struct Way<'a> {
-    pub(super) limit: f32,
-    pub(super) is_blocked: bool,
-    /// By object.
-    pub(super) open: &'a [bool],
-    pub(super) passed: &'a mut Passed,
-}
-
-impl Met for Way<'_> {
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.limit
-    }
-
-    #[inline(always)]
-    fn is_blocked(&self) -> bool {
-        self.is_blocked
-    }
-
-    #[inline(always)]
-    fn take(&mut self, hit: Nearest) {
-        if self.open[hit.object as usize] {
-            self.passed.note(hit);
-        } else {
-            self.is_blocked = true;
-        }
     }
 }
 
