@@ -92,6 +92,10 @@ pub(crate) struct RenderOptions {
     /// Samples a pixel [default: the scene's, or no limit if --time is given]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Effort")]
     pub(crate) spp: Option<u32>,
+    /// More samples where the image is noisy: after 8 for each pixel, in proportion to the standard deviation around it, from
+    /// half of the mean to 16 times as many. Unbiased; a crop of such an image is not the image of the crop
+    #[arg(long, help_heading = "Effort")]
+    pub(crate) adaptive: bool,
     /// Stop after this time, such as 30s, 2m or 1h; every pixel gets one sample at least
     #[arg(long, value_name = "TIME", value_parser = values::duration, help_heading = "Effort")]
     pub(crate) time: Option<Duration>,

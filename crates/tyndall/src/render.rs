@@ -3,6 +3,10 @@
 //! The image depends on the scene and the settings alone. Every sample owns its random numbers (pixel, index, seed) and
 //! every pixel adds its samples in the order of their index, so threads, tiles, passes and crops cannot be seen in it.
 
+mod allocation;
+
+pub use allocation::Allocation;
+
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
@@ -18,6 +22,7 @@ use crate::{
     spectrum::{Lanes, Wavelengths, film_rgb},
     tally::Tally,
 };
+use allocation::{FIRST_LOOK, Plan};
 
 /// Edge of a tile [pixels].
 const TILE: u32 = 16;
@@ -25,8 +30,10 @@ const TILE: u32 = 16;
 /// What to render of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Samples a pixel. The observer may stop earlier.
+    /// Samples a pixel, in the mean of all pixels. The observer may stop earlier.
     pub spp: u32,
+    /// Which pixels get more of them than others.
+    pub allocation: Allocation,
     /// Index of the first sample: a resumed render begins where the last one ended.
     pub first_sample: u32,
     /// Seed of all random numbers.
@@ -39,7 +46,14 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { spp: 16, first_sample: 0, seed: 0, sampler: SamplerKind::default(), crop: None }
+        Self {
+            spp: 16,
+            allocation: Allocation::Even,
+            first_sample: 0,
+            seed: 0,
+            sampler: SamplerKind::default(),
+            crop: None,
+        }
     }
 }
 
@@ -99,43 +113,34 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
         Film::new(camera.width, camera.height, settings.crop.unwrap_or(Crop::full(camera.width, camera.height)))
             .with_layers(&layers);
     let mut tiles = tiles_of(film.crop, layers.len());
-    let total = film.pixels.len() as u64 * u64::from(settings.spp);
+    let mut plan = Plan::even(film.pixels.len(), settings.spp);
     let samples = AtomicU64::new(0);
     let stopped = AtomicBool::new(false);
 
-    for pass in passes(settings.spp) {
+    // A first picture comes at once, and later ones cost little to show. Where pixels get up to sixteen times as many samples
+    // as others, a tile must still hold them.
+    let step = if settings.allocation == Allocation::Even { 32 } else { FIRST_LOOK };
+    let mut level = 0;
+    while level < plan.end && !stopped.load(Relaxed) {
+        level = level.saturating_add(level.clamp(1, step)).min(plan.end);
+        let total = plan.total();
         tiles.par_iter_mut().with_max_len(1).for_each(|tile| {
             if observer.cancelled() {
                 stopped.store(true, Relaxed);
                 return;
             }
-            let first = settings.first_sample.saturating_add(pass.start);
-            let last = settings.first_sample.saturating_add(pass.end);
-            work.render_tile(&layers, first..last, tile);
-            let taken = tile.pixels.len() as u64 * u64::from(pass.end - pass.start);
+            let taken = work.render_tile(&layers, |pixel| plan.samples(film.crop.index(pixel), level), tile);
             let samples = samples.fetch_add(taken, Relaxed) + taken;
             observer.tile_done(Progress { samples, total });
         });
         copy_tiles(&tiles, &mut film);
         observer.pass_done(&film, Progress { samples: samples.load(Relaxed), total });
-        if stopped.load(Relaxed) {
-            break;
+        if level == FIRST_LOOK && settings.allocation == Allocation::ByError {
+            plan = Plan::by_error(&film, settings.spp);
         }
     }
     let tally = tiles.iter().fold(Tally::default(), |sum, tile| sum.merged(&tile.tally));
     Rendering { film, tally, stopped: stopped.load(Relaxed) }
-}
-
-/// Sample ranges of the passes: 1, 1, 2, 4, … at most 32 at a time, so that a first image comes at once and later
-/// passes cost little to show.
-fn passes(spp: u32) -> impl Iterator<Item = std::ops::Range<u32>> {
-    let mut start = 0;
-    std::iter::from_fn(move || {
-        let size = start.clamp(1, 32).min(spp - start);
-        let range = start..start + size;
-        start = range.end;
-        (!range.is_empty()).then_some(range)
-    })
 }
 
 fn tiles_of(crop: Crop, layers: usize) -> Vec<Tile> {
@@ -190,28 +195,30 @@ impl Work<'_> {
         self.apart.is_some() || !matches!(layer.recorded, Recorded::Paths(_))
     }
 
-    fn render_tile(&self, layers: &[LayerKind], samples: std::ops::Range<u32>, tile: &mut Tile) {
-        let seen: Vec<_> = tile
-            .area
-            .pixels()
-            .flat_map(|pixel| samples.clone().map(move |index| Seen::new(self.scene, self.settings, pixel, index)))
-            .collect();
+    /// Takes samples until each pixel has as many as `wanted` says; returns how many that were.
+    fn render_tile(&self, layers: &[LayerKind], wanted: impl Fn((u32, u32)) -> u32, tile: &mut Tile) -> u64 {
+        let first = self.settings.first_sample;
+        let mut seen = Vec::new();
+        for (i, (at, pixel)) in tile.area.pixels().zip(&tile.pixels).enumerate() {
+            let indices = pixel.count as u32..wanted(at);
+            seen.extend(indices.map(|k| (i, Seen::new(self.scene, self.settings, at, first.saturating_add(k)))));
+        }
         tile.tally.paths += seen.len() as u64;
-        let passed: Vec<_> = seen.iter().filter(|seen| seen.weight != 0.0).map(|seen| seen.sample).collect();
+        let passed: Vec<_> = seen.iter().filter(|(_, seen)| seen.weight != 0.0).map(|(_, seen)| seen.sample).collect();
         let parts = match self.apart {
             Some((by, integrator)) => integrator.li_apart(self.scene, by, &passed, &mut tile.tally),
             None => Parts::undivided(self.integrator.li_many(self.scene, &passed, &mut tile.tally)),
         };
 
-        let (per_pixel, mut rays) = (samples.len(), 0..passed.len());
-        for (i, seen) in seen.iter().enumerate() {
-            let pixel = &mut tile.pixels[i / per_pixel];
+        let mut rays = 0..passed.len();
+        for (i, seen) in &seen {
+            let pixel = &mut tile.pixels[*i];
             let Some(ray) = (seen.weight != 0.0).then(|| rays.next()).flatten() else {
                 pixel.add([0.0; 3]);
                 continue;
             };
             let radiance = parts.radiance[ray];
-            let (value, cells) = (seen.value(self.scene, radiance), &mut tile.cells[i / per_pixel * layers.len()..]);
+            let (value, cells) = (seen.value(self.scene, radiance), &mut tile.cells[i * layers.len()..]);
             seen.fill(self.scene, layers, radiance, cells);
             if radiance.is_finite() && radiance.min_lane() >= 0.0 {
                 pixel.add(value);
@@ -224,6 +231,7 @@ impl Work<'_> {
                 pixel.add([0.0; 3]);
             }
         }
+        seen.len() as u64
     }
 }
 

@@ -11,7 +11,7 @@ use tyndall::{
     material::{Index, Material, Roughness},
     math::Vec3,
     medium::MediumId,
-    render::{Rendering, Settings, render},
+    render::{Allocation, Rendering, Settings, render},
     sampling::SamplerKind,
     scene::Scene,
     spectrum::{ColorMode, Spectrum, glass::Glass},
@@ -52,6 +52,18 @@ fn one_thread_and_many_give_the_same_bits() {
         assert_eq!(one.tally, many.tally, "{color:?}");
         assert_eq!((one.tally.bad_samples, one.tally.leaks), (0, 0));
     }
+}
+
+#[test]
+fn one_thread_and_many_share_samples_out_alike() {
+    let scene = still_life(1.0, ColorMode::Rgb);
+    let settings = Settings { spp: 20, allocation: Allocation::ByError, ..Settings::default() };
+    let one = picture(&scene, &VolPath::default(), &settings, 1);
+    assert_eq!(one, picture(&scene, &VolPath::default(), &settings, 7));
+    let counts: Vec<u64> = one.film.pixels.iter().map(|pixel| pixel.count).collect();
+    assert!(counts.iter().max() > counts.iter().min().map(|least| 2 * least).as_ref(), "all have as many");
+    let mean = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
+    assert!(mean <= 20.0 && mean > 19.0, "{mean}");
 }
 
 #[test]

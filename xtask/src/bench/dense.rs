@@ -1,5 +1,5 @@
-//! Dense media: efficiency beside both backends of Mitsuba at the best of its settings, and beside the same integrator
-//! without walks; and what a collision costs beside the bare loop of `bare_walk.rs`.
+//! Dense media: efficiency beside both backends of Mitsuba at the best of its settings, beside the same integrator without walks,
+//! and with samples shared out by error; and what a collision costs beside the bare loop of `bare_walk.rs`.
 
 use anyhow::{Context, Result};
 
@@ -26,7 +26,7 @@ const COLLISION: f64 = 8.0;
 pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
     scenes::race_all(&SCENES, tyndall, turns)?;
     for (scene, _) in SCENES {
-        walks_over_rays(scene, tyndall, turns)?;
+        gains(scene, tyndall, turns)?;
     }
     let bare = lab::compile_bare_walk()?;
     let (mut loops, mut collisions) = (Vec::new(), Vec::new());
@@ -40,24 +40,23 @@ pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
     Ok(())
 }
 
-/// How many times the efficiency of a ray for each flight walks have.
-fn walks_over_rays(scene: &str, tyndall: &Tyndall, turns: u32) -> Result<()> {
-    const SPP: u32 = 8;
+/// How many times the efficiency of a ray for each flight walks have, and of even samples those that are shared out by error.
+fn gains(scene: &str, tyndall: &Tyndall, turns: u32) -> Result<()> {
+    const PAIRS: [(&str, u32, [&[&str]; 2]); 2] = [
+        ("walks over a ray for each flight", 8, [&[], &["--integrator", "volpath-traced"]]),
+        ("--adaptive over even samples", 32, [&["--adaptive"], &[]]),
+    ];
     let directory = directory(scene)?;
-    let mut sides: [Vec<Runs>; 2] = [Vec::new(), Vec::new()];
-    for turn in Turn::all(turns, 2) {
-        for (integrator, runs) in ["volpath", "volpath-traced"].into_iter().zip(&mut sides) {
-            let extra = ["--integrator", integrator];
-            runs.push(tyndall.render(&scene_file(scene), SPP, turn, &directory.join(integrator), &extra)?);
+    for (name, spp, arguments) in PAIRS {
+        let mut sides: [Vec<Runs>; 2] = [Vec::new(), Vec::new()];
+        for turn in Turn::all(turns, 2) {
+            for (arguments, runs) in arguments.into_iter().zip(&mut sides) {
+                runs.push(tyndall.render(&scene_file(scene), spp, turn, &directory.join("gain"), arguments)?);
+            }
         }
+        let [with, without] = sides.map(|runs| Side::of(&runs, spp));
+        println!("{scene}: {name}: {:.2}×", with.efficiency_over(&without));
     }
-    let [walks, rays] = sides.map(|runs| Side::of(&runs, SPP));
-    println!(
-        "{scene}: walks {:.3e}, a ray for each flight {:.3e}: {:.2}×",
-        walks.efficiency,
-        rays.efficiency,
-        walks.efficiency_over(&rays)
-    );
     Ok(())
 }
 

@@ -40,7 +40,7 @@ fn race(duel: &Duel, target: f64, turns: u32, mitsuba: &Mitsuba, tyndall: &Tynda
             runs.push(mitsuba.render(rival, turn, &directory, false)?);
         }
         let label = directory.join("tyndall");
-        ours.push(tyndall.render(&scene_file(duel.scene), duel.tyndall_spp, turn, &label, &[])?);
+        ours.push(tyndall.render(&scene_file(duel.scene), duel.tyndall_spp, turn, &label, duel.arguments)?);
     }
     let ours = Side::of(&ours, duel.tyndall_spp);
     println!("{}: tyndall {:.3e} 1/(MSE·CPU s)", duel.scene, ours.efficiency);

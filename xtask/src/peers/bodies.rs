@@ -1,5 +1,6 @@
-//! Balls of many triangles, and scenes of the peers in which they stand for the body.
+//! What scenes of the peers hold and no one wants in a repository: balls of many triangles that stand for a body, and hair.
 
+use std::f64::consts::PI;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -25,17 +26,55 @@ pub(crate) const MESHED: &str = "_mesh";
 const BODY: &str = r#"<shape type="ply"><string name="filename" value="body.ply"/><boolean name="face_normals" value="true"/>
   <transform name="to_world"><scale value="20"/></transform>"#;
 
-/// Writes the scenes of [`BODIES`] and their body into `target/bench`.
+/// The scene with hair, and the file of its strands.
+pub(crate) const HAIR: &str = "e_hair";
+const STRANDS: &str = "strands.txt";
+
+/// Writes the scenes of [`BODIES`] and of [`HAIR`] with what they hold into `target/bench`.
 pub(crate) fn write_bodies() -> Result<()> {
     let directory = root().join("target/bench");
     std::fs::create_dir_all(&directory)?;
     write_ball(&directory.join("body.ply"), 318)?;
+    write_lock(&directory.join(STRANDS), 2000)?;
+    std::fs::copy(root().join("xtask/scenes").join(format!("{HAIR}.xml")), super::scene_file(HAIR))?;
     for [scene, body, meshed] in BODIES {
         let text = std::fs::read_to_string(super::scene_file(scene))?;
         ensure!(text.contains(body), "{scene} has another body");
         std::fs::write(directory.join(format!("{meshed}.xml")), text.replace(body, BODY))?;
     }
     Ok(())
+}
+
+/// Writes a lock of hair that hangs down, unless it is there: `x y z radius` a line, an empty line after each strand.
+fn write_lock(path: &Path, strands: u32) -> Result<()> {
+    const POINTS: u32 = 14;
+    if path.exists() {
+        return Ok(());
+    }
+    let mut out = BufWriter::new(File::create(path)?);
+    let mut drawn = 0_u32;
+    let mut between = |low: f64, high: f64| {
+        drawn += 1;
+        low + (high - low) * f64::from(hash(drawn)) / 4_294_967_296.0
+    };
+    for _ in 0..strands {
+        let (away, turn) = (6.0 * between(0.0, 1.0).sqrt(), between(0.0, 2.0 * PI));
+        let mut at = [away * turn.cos(), away * turn.sin()];
+        for point in 0..POINTS {
+            let down = f64::from(point) / f64::from(POINTS - 1);
+            writeln!(out, "{:.5} {:.5} {:.5} {:.5}", at[0], 30.0 - 60.0 * down, at[1], 0.04 - 0.028 * down)?;
+            at = at.map(|x| x + between(-0.4, 0.4));
+        }
+        writeln!(out)?;
+    }
+    Ok(out.flush()?)
+}
+
+/// Bits that look random (Wellons 2018, `lowbias32`).
+fn hash(x: u32) -> u32 {
+    let x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
+    let x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
 }
 
 /// Writes a ball, unless it is there; returns the number of its triangles.
@@ -54,7 +93,7 @@ pub(crate) fn write_ball(path: &Path, n: u32) -> Result<u32> {
     point([0.0, 0.0, 1.0])?;
     for (ring, meridian) in (1..=rings).flat_map(|ring| (0..n).map(move |meridian| (ring, meridian))) {
         let (u, v) = (f64::from(meridian) / f64::from(n), f64::from(ring) / f64::from(rings + 1));
-        let (u, v) = (2.0 * std::f64::consts::PI * u, std::f64::consts::PI * v);
+        let (u, v) = (2.0 * PI * u, PI * v);
         let r = 1.0 + 0.05 * (40.0 * u).sin() * (37.0 * v).sin() + 0.01 * (300.0 * u).sin() * (280.0 * v).sin();
         point([r * v.sin() * u.cos(), r * v.sin() * u.sin(), r * v.cos()])?;
     }

@@ -53,7 +53,7 @@ pub(crate) struct Options {
 
 /// A scene of Mitsuba's in the repository, or one of those that are made from them.
 pub(crate) fn scene_file(scene: &str) -> PathBuf {
-    if scene.ends_with(bodies::MESHED) {
+    if scene.ends_with(bodies::MESHED) || scene == bodies::HAIR {
         return root().join(format!("target/bench/{scene}.xml"));
     }
     root().join(format!("scenes/peers/mitsuba/{scene}.xml"))
@@ -132,7 +132,7 @@ fn fight(duel: &Duel, options: &Options, mitsuba: &Mitsuba, tyndall: Option<&Tyn
             Some(tyndall) => {
                 theirs.push(peer);
                 let label = directory.join("tyndall");
-                ours.push(tyndall.render(&scene_file(duel.scene), duel.tyndall_spp, turn, &label, &[])?);
+                ours.push(tyndall.render(&scene_file(duel.scene), duel.tyndall_spp, turn, &label, duel.arguments)?);
             }
         }
     }

@@ -4,7 +4,7 @@
 //! Roulette is off in scattering media of high albedo: Mitsuba's default caps survival at 0.95 after depth 5, which
 //! makes the variance infinite there and loses light in practice. Light sampling inside the medium is off where a
 //! dielectric boundary blocks every shadow ray. Where few vertices matter its stratified sampler `multijitter` is the better
-//! one, as ours is: each renderer has its best.
+//! one, as ours is; and tyndall has `--adaptive` where that gains: each renderer has its best.
 
 /// A backend of Mitsuba.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,6 +38,8 @@ pub(crate) struct Duel {
     pub(crate) mitsuba_spp: u32,
     /// Samples a pixel in one run of tyndall: about as long; more, where its start would take most of that
     pub(crate) tyndall_spp: u32,
+    /// Arguments of `tyndall render`
+    pub(crate) arguments: &'static [&'static str],
 }
 
 /// Spectral MIS without roulette.
@@ -45,31 +47,40 @@ const DEEP: &str = "integrator=volpathmis rr_depth=1000000";
 /// The same, without light sampling in the medium.
 const DEEP_IN_GLASS: &str = "integrator=volpathmis rr_depth=1000000 nee=false";
 
+/// More samples where errors are large.
+const ADAPTIVE: &[&str] = &["--adaptive"];
+
 /// All scenes, the quick ones first.
 pub(crate) fn duels() -> Vec<Duel> {
     use Variant::{Llvm, Scalar};
-    let duel = |scene, variant, parameters, mitsuba_spp, tyndall_spp| Duel {
+    let even = |scene, variant, parameters, mitsuba_spp, tyndall_spp| Duel {
         scene,
         variant,
         parameters,
         mitsuba_spp,
         tyndall_spp,
+        arguments: &[],
+    };
+    let adaptive = |scene, variant, parameters, mitsuba_spp, tyndall_spp| Duel {
+        arguments: ADAPTIVE,
+        ..even(scene, variant, parameters, mitsuba_spp, tyndall_spp)
     };
     vec![
-        duel("g_cornell", Llvm, "integrator=path sampler=multijitter", 256, 64),
-        duel("d_fog_box", Llvm, "integrator=volpath sampler=multijitter", 64, 32),
-        duel("d2_fog_lamp", Llvm, "integrator=volpath sampler=multijitter", 64, 32),
-        duel("f_grains", Scalar, "integrator=path", 32, 24),
-        duel("f2_grains_direct", Scalar, "integrator=path", 40, 24),
-        duel("b_marble_cube_matched", Scalar, DEEP, 12, 6),
-        duel("b4_marble_mesh", Scalar, DEEP, 8, 96),
-        duel("b2_furnace_matched", Scalar, DEEP_IN_GLASS, 24, 10),
-        duel("b3_grey_matched", Scalar, "integrator=volpath rr_depth=1000000", 12, 6),
-        duel("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 6),
-        duel("a2_marble_cube_spot", Scalar, DEEP_IN_GLASS, 2, 2),
-        duel("a3_marble_cube_rough_spot", Scalar, DEEP_IN_GLASS, 8, 6),
-        duel("a4_marble_cube_frosted_spot", Scalar, DEEP_IN_GLASS, 24, 20),
-        duel("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 3),
-        duel("c2_milk_mesh", Scalar, DEEP_IN_GLASS, 2, 48),
+        adaptive("g_cornell", Llvm, "integrator=path sampler=multijitter", 256, 64),
+        adaptive("d_fog_box", Llvm, "integrator=volpath sampler=multijitter", 64, 32),
+        even("d2_fog_lamp", Llvm, "integrator=volpath sampler=multijitter", 64, 32),
+        even("e_hair", Llvm, "integrator=path sampler=multijitter", 64, 32),
+        even("f_grains", Scalar, "integrator=path", 32, 24),
+        even("f2_grains_direct", Scalar, "integrator=path", 40, 24),
+        adaptive("b_marble_cube_matched", Scalar, DEEP, 12, 32),
+        adaptive("b4_marble_mesh", Scalar, DEEP, 8, 96),
+        even("b2_furnace_matched", Scalar, DEEP_IN_GLASS, 24, 32),
+        adaptive("b3_grey_matched", Scalar, "integrator=volpath rr_depth=1000000", 12, 32),
+        even("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 6),
+        even("a2_marble_cube_spot", Scalar, DEEP_IN_GLASS, 2, 2),
+        even("a3_marble_cube_rough_spot", Scalar, DEEP_IN_GLASS, 8, 6),
+        even("a4_marble_cube_frosted_spot", Scalar, DEEP_IN_GLASS, 24, 20),
+        adaptive("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 24),
+        adaptive("c2_milk_mesh", Scalar, DEEP_IN_GLASS, 2, 48),
     ]
 }

@@ -8,7 +8,7 @@ use rayon::ThreadPool;
 use tyndall::{
     film::{Crop, Film},
     integrator::{Integrator, VolPath},
-    render::{Rendering, Settings, render},
+    render::{Allocation, Rendering, Settings, render},
     sampling::SamplerKind,
     spectrum::ColorMode,
 };
@@ -207,7 +207,9 @@ fn settings(options: &RenderOptions, loaded: &Loaded) -> anyhow::Result<Settings
         SamplerName::Sobol => SamplerKind::Sobol,
         SamplerName::Independent => SamplerKind::Independent,
     };
-    Ok(Settings { spp, first_sample: 0, seed: options.seed.or(seed).unwrap_or(0), sampler, crop })
+    let allocation = if options.adaptive { Allocation::ByError } else { Allocation::Even };
+    let seed = options.seed.or(seed).unwrap_or(0);
+    Ok(Settings { spp, allocation, first_sample: 0, seed, sampler, crop })
 }
 
 /// Whether so many pixels, each with so many values and their sums, can be held.

@@ -44,6 +44,19 @@ impl Crop {
         (self.min.1..self.max.1).flat_map(move |y| (self.min.0..self.max.0).map(move |x| (x, y)))
     }
 
+    /// The pixels of both.
+    #[must_use]
+    pub fn common(self, other: Self) -> Self {
+        let (Self { min: a, max: b }, Self { min: c, max: d }) = (self, other);
+        Self { min: (a.0.max(c.0), a.1.max(c.1)), max: (b.0.min(d.0), b.1.min(d.1)) }
+    }
+
+    /// Where the pixel `(x, y)` of this crop is, row by row.
+    #[inline]
+    pub fn index(&self, (x, y): (u32, u32)) -> usize {
+        ((y - self.min.1) * self.width() + (x - self.min.0)) as usize
+    }
+
     /// The part of this crop that lies within an image.
     #[must_use]
     pub fn within(self, width: u32, height: u32) -> Self {
@@ -141,8 +154,7 @@ impl Film {
     /// The pixel at image coordinates `(x, y)`; `None` outside the crop.
     pub fn pixel(&self, x: u32, y: u32) -> Option<&Pixel> {
         let c = &self.crop;
-        (x >= c.min.0 && y >= c.min.1 && x < c.max.0 && y < c.max.1)
-            .then(|| &self.pixels[((y - c.min.1) * c.width() + (x - c.min.0)) as usize])
+        (x >= c.min.0 && y >= c.min.1 && x < c.max.0 && y < c.max.1).then(|| &self.pixels[c.index((x, y))])
     }
 
     /// Adds the samples of a film of the same image and crop.

@@ -128,7 +128,14 @@ fn render(
     tyndall: &Tyndall,
 ) -> Result<Runs> {
     if let Some(parameters) = side.mitsuba {
-        let duel = Duel { scene: cube.scene, variant: Variant::Scalar, parameters, mitsuba_spp: spp, tyndall_spp: spp };
+        let duel = Duel {
+            scene: cube.scene,
+            variant: Variant::Scalar,
+            parameters,
+            mitsuba_spp: spp,
+            tyndall_spp: spp,
+            arguments: &[],
+        };
         mitsuba.render(&duel, turn, directory, false)
     } else {
         // Stratified samples converge faster than 1/N: independent ones let roulette alone be seen.

@@ -129,7 +129,7 @@ impl<'a> Bench<'a> {
 
     /// Independent samples, so that the variance of the mean is that of a sample over their number.
     fn settings(&self, spp: u32, seed: u64) -> Settings {
-        Settings { spp, first_sample: 0, seed, sampler: SamplerKind::Independent, crop: self.loaded.crop }
+        Settings { spp, seed, sampler: SamplerKind::Independent, crop: self.loaded.crop, ..Settings::default() }
     }
 
     fn stopwatch<'b>(&self, label: &str, limit: Option<f64>, reference: Option<&'b Reference>) -> Stopwatch<'b> {

@@ -78,7 +78,8 @@ fn mean(scene: &Scene, with: &Named, share: Share) -> Estimate {
     let (mut sum, mut squares, mut count, mut first_sample) = (0.0, 0.0, 0.0, 0);
     loop {
         let spp = (first_sample.max(4)).min(most - first_sample);
-        let settings = Settings { spp, first_sample, seed: share.seed, sampler: SamplerKind::Independent, crop: None };
+        let sampler = SamplerKind::Independent;
+        let settings = Settings { spp, first_sample, seed: share.seed, sampler, ..Settings::default() };
         let film = render(scene, &*with.integrator, &settings, &()).film;
         for pixel in &film.pixels {
             sum += pixel.sum[0];
