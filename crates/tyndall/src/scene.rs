@@ -91,8 +91,6 @@ struct Facts {
     has_null_surfaces: bool,
     /// By object: whether it lets all light pass, if that is all there is to know of what light can pass.
     open: Option<Vec<bool>>,
-    /// Whether paths may pass those without a stop.
-    open_to_paths: bool,
     /// By medium: how light samples from inside it reach lights.
     lit: Vec<Lit>,
     /// By object: the index of a smooth wall that light samples may bend at \[1\].
@@ -201,7 +199,6 @@ impl Scene {
             (0..).map(LightId).take(self.lights.lights.len()).any(|lamp| self.small_lamp(medium, lamp).is_some())
         };
         self.facts.holds_lamp = (0..).map(MediumId).take(self.media.len()).map(holds_lamp).collect();
-        self.facts.open_to_paths = self.facts.has_null_surfaces && !self.facts.holds_lamp.contains(&true);
         self.facts.distances = distances(&self);
         self.facts.around_camera = enclosure::around_camera(&self);
         self
@@ -223,10 +220,10 @@ impl Scene {
         Some(open)
     }
 
-    /// The same where paths need not stop for lamps that collisions behind a boundary are aimed at.
+    /// The same if there is such a surface.
     #[inline]
     pub(crate) fn open_to_paths(&self) -> Option<&[bool]> {
-        self.open().filter(|_| self.facts.open_to_paths)
+        self.open().filter(|_| self.facts.has_null_surfaces)
     }
 
     /// By object whether it lets all light pass, where that is all there is to know of what light can pass.

@@ -6,11 +6,30 @@ use crate::{
     light::Reference,
     math::{Bounds, Ray, Vec2, Vec3},
     medium::{Inside, Within},
-    path::{Attempt, History, Path, PathWeights, Sight, Source, Turn, Vertex, event::Aimed, shadow},
+    path::{Attempt, History, Path, PathWeights, Sight, Source, Turn, Vertex, aim::Aiming, event::Aimed, shadow},
     phase::Phase,
     scene::Scene,
     tally::Tally,
 };
+
+/// Lamps that collisions are aimed at, and where what they find goes.
+pub(super) struct Lamps<'a, S> {
+    pub(super) scene: &'a Scene,
+    pub(super) settings: &'a VolPath,
+    pub(super) sink: &'a mut S,
+}
+
+impl<S: Sink> Aiming for Lamps<'_, S> {
+    #[inline]
+    fn lamp(&mut self, path: &mut Path) -> Option<Bounds> {
+        path.lamp(self.scene, self.settings)
+    }
+
+    #[inline]
+    fn aimed(&mut self, path: &Path, aimed: &Aimed, tally: &mut Tally) {
+        path.sample_aimed(self.scene, aimed, self.sink, tally);
+    }
+}
 
 impl Path {
     /// A light sample, straight or through a wall.
@@ -137,7 +156,7 @@ impl Path {
 
     /// Light at a collision that was aimed at a lamp.
     #[inline]
-    pub(super) fn sample_aimed(&self, scene: &Scene, aimed: &Aimed, sink: &mut impl Sink, tally: &mut Tally) {
+    fn sample_aimed(&self, scene: &Scene, aimed: &Aimed, sink: &mut impl Sink, tally: &mut Tally) {
         let Aimed { p, weights, numbers } = aimed;
         let Some(medium) = self.inside.id() else { return };
         let vertex = Vertex::Medium { p: *p, dir: self.ray.dir, medium, phase: &scene.medium(medium).phase };

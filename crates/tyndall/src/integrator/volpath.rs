@@ -1,6 +1,7 @@
 //! The workhorse: unidirectional path tracing of surfaces and homogeneous media, with light sampling at every vertex
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
+use super::next_event::Lamps;
 use crate::{
     bend::Goal,
     light::Reference,
@@ -95,14 +96,11 @@ impl Path {
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
         let scene = self.world(scene);
         let lamp = self.lamp(scene, settings);
-        let passed = if lamp.is_none() { self.pass_open(scene, tally) } else { None };
-        let (event, aimed) = match passed {
-            Some(event) => (event, None),
-            None => self.next_event_past(scene, lamp, tally),
+        let mut lamps = Lamps { scene, settings, sink: &mut *sink };
+        let event = match self.pass_open(scene, lamp, &mut lamps, tally) {
+            Some(event) => event,
+            None => self.next_event_past(scene, lamp, &mut lamps, tally),
         };
-        if let Some(aimed) = aimed {
-            self.sample_aimed(scene, &aimed, sink, tally);
-        }
         self.respond(event, scene, settings, sink, tally)
     }
 

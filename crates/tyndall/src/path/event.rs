@@ -1,6 +1,9 @@
 //! What happens next to a path: free flight first, ray second.
 
-use super::{Path, PathWeights, aim::Aim};
+use super::{
+    Path, PathWeights,
+    aim::{Aim, Aiming},
+};
 use crate::{
     math::{Bounds, Vec3, fast},
     medium::{Inside, MediumId, bodies::Part},
@@ -55,7 +58,7 @@ impl Path {
     /// Samples a free flight, looks for a surface before its end, and weighs the path for what it found.
     #[inline]
     pub fn next_event<'s>(&mut self, scene: &'s Scene, tally: &mut Tally) -> Event<'s> {
-        self.next_event_past(scene, None, tally).0
+        self.next_event_past(scene, None, &mut (), tally)
     }
 
     /// The same past a lamp, at which another collision is aimed.
@@ -64,25 +67,42 @@ impl Path {
         &mut self,
         scene: &'s Scene,
         lamp: Option<Bounds>,
+        aiming: &mut impl Aiming,
         tally: &mut Tally,
-    ) -> (Event<'s>, Option<Aimed>) {
+    ) -> Event<'s> {
         if let Some(collision) = self.unfinished_collision(scene) {
-            return (collision, None);
+            return collision;
         }
         let (flight, lamp) = match self.unfinished_flight() {
             Some(flight) => (flight, None),
             None => (self.sample_flight(), lamp),
         };
         tally.rays += 1;
-        let Some(lamp) = lamp else {
+        if lamp.is_none() {
             let hit = scene.first_surface(&self.ray, flight);
-            return (self.arrive(scene, hit, flight, None, tally), None);
-        };
+            return self.arrive(scene, hit, flight, None, tally);
+        }
         let hit = scene.first_surface(&self.ray, f32::INFINITY);
-        let aim = Aim::new(&self.ray, hit.map_or(f32::INFINITY, |hit| hit.t), &lamp);
-        let aimed = aim.and_then(|aim| self.collide_aimed(scene, &aim));
+        let aim = self.aim(scene, lamp, hit.map_or(f32::INFINITY, |hit| hit.t), aiming, tally);
         let hit = hit.filter(|hit| hit.t < flight + scene.rounding(&self.ray, flight));
-        (self.arrive(scene, hit, flight, aim, tally), aimed)
+        self.arrive(scene, hit, flight, aim, tally)
+    }
+
+    /// Aims at a lamp from where the path is, along the way that it goes until `end` [length].
+    #[inline]
+    pub(super) fn aim(
+        &mut self,
+        scene: &Scene,
+        lamp: Option<Bounds>,
+        end: f32,
+        aiming: &mut impl Aiming,
+        tally: &mut Tally,
+    ) -> Option<Aim> {
+        let aim = Aim::new(&self.ray, end, &lamp?)?;
+        if let Some(aimed) = self.collide_aimed(scene, &aim) {
+            aiming.aimed(self, &aimed, tally);
+        }
+        Some(aim)
     }
 
     /// At a surface within the flight, at a collision at its end, or nowhere.

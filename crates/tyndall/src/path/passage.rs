@@ -1,24 +1,36 @@
 //! Boundaries without a material on a path's way, all passed in one search: fog in a room would else cost a ray where its box
 //! begins, one where it ends, and one to the wall.
 //!
-//! The same flights are drawn in the same order as by stopping at each, and where the search has not looked far enough another
-//! goes on.
+//! The same flights are drawn in the same order as by stopping at each, with the same collisions aimed at lamps, and where the
+//! search has not looked far enough another goes on.
 
-use super::{Event, Path};
-use crate::{scene::Scene, shape::Passed, tally::Tally};
+use super::{Event, Path, aim::Aiming};
+use crate::{math::Bounds, scene::Scene, shape::Passed, tally::Tally};
 
 impl Path {
-    /// The next event behind all boundaries that are open, where [`Scene::open_to_paths`] knows them. `None` leaves a flight for
-    /// [`Self::next_event`] to follow, or has done nothing.
+    /// The next event behind all boundaries that are open, where [`Scene::open_to_paths`] knows them, past a `lamp` if there is one to
+    /// aim at. `None` leaves a flight for [`Self::next_event`] to follow, or has done nothing.
     #[inline]
-    pub fn pass_open<'s>(&mut self, scene: &'s Scene, tally: &mut Tally) -> Option<Event<'s>> {
+    pub fn pass_open<'s>(
+        &mut self,
+        scene: &'s Scene,
+        mut lamp: Option<Bounds>,
+        aiming: &mut impl Aiming,
+        tally: &mut Tally,
+    ) -> Option<Event<'s>> {
         let open = scene.open_to_paths()?;
         if self.collision_is_due() {
             return None;
         }
-        let mut flight = self.unfinished_flight().unwrap_or_else(|| self.sample_flight());
+        let mut flight = match self.unfinished_flight() {
+            Some(flight) => {
+                lamp = None;
+                flight
+            }
+            None => self.sample_flight(),
+        };
         let way = self.ray;
-        let reach = self.reach(scene, flight);
+        let reach = if lamp.is_some() { f32::INFINITY } else { self.reach(scene, flight) };
         tally.rays += 1;
         let mut passed = Passed::default();
         let wall = scene.geometry.intersect_but(&way, reach, open, &mut passed);
@@ -29,22 +41,36 @@ impl Path {
         };
         let mut from = 0.0;
         for (t, surface) in surfaces {
-            if t >= end || t - from >= flight + scene.rounding(&self.ray, flight) {
+            if t >= end {
                 break;
+            }
+            let aim = self.aim(scene, lamp, t - from, aiming, tally);
+            if t - from >= flight + scene.rounding(&self.ray, flight) {
+                return Some(self.arrive(scene, None, flight, aim, tally));
             }
             self.pass(t - from);
             self.cross(scene, &surface);
             from = t;
+            lamp = aiming.lamp(self);
             flight = self.sample_flight();
         }
         let stop = from + flight + scene.rounding(&self.ray, flight);
         match wall {
-            Some(wall) if wall.t < stop => {
+            Some(wall) => {
+                let aim = self.aim(scene, lamp, wall.t - from, aiming, tally);
+                if stop <= wall.t {
+                    return Some(self.arrive(scene, None, flight, aim, tally));
+                }
                 self.pass(wall.t - from);
                 Some(Event::Surface(scene.geometry.interaction(&way, &wall)))
             }
-            _ if stop <= reach => Some(self.arrive(scene, None, flight, None, tally)),
-            _ => {
+            None if stop <= reach => {
+                // Only a way that is known to its end can be aimed along.
+                let lamp = lamp.filter(|_| reach == f32::INFINITY);
+                let aim = self.aim(scene, lamp, f32::INFINITY, aiming, tally);
+                Some(self.arrive(scene, None, flight, aim, tally))
+            }
+            None => {
                 self.leave_flight(flight);
                 None
             }
