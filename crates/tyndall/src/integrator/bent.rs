@@ -23,7 +23,7 @@ use crate::{
     medium::Inside,
     path::{
         Attempt, History, Path, PathWeights, Sight, Source, Turn, Vertex, shadow,
-        sight::{Passed, Start},
+        sight::{PassedWall, Start},
         turn::Kind,
         vertex::Scattered,
     },
@@ -84,7 +84,7 @@ impl Scene {
     /// The density with which a light sample finds the goal of a path that has passed a wall, if it would have gone the same way
     /// [1/sr].
     #[inline(never)]
-    fn light_density_bent(&self, id: LightId, goal: &Goal, passed: &Passed, tally: &mut Tally) -> f32 {
+    fn light_density_bent(&self, id: LightId, goal: &Goal, passed: &PassedWall, tally: &mut Tally) -> f32 {
         let (light, from) = (self.lights.get(id), Reference { p: passed.start.p, normal: None });
         if !light.is_worth_bending() {
             return 0.0;
@@ -164,12 +164,12 @@ impl Path {
     /// The wall that the path passes by a Dirac lobe, if light samples from its last vertex may bend there. To be called before it
     /// does.
     #[inline]
-    pub(super) fn passes(&self, scene: &Scene, vertex: &Vertex, scattered: &Scattered) -> Option<Passed> {
+    pub(super) fn passes(&self, scene: &Scene, vertex: &Vertex, scattered: &Scattered) -> Option<PassedWall> {
         let (Sight::Behind, Vertex::Surface { hit, .. }) = (self.sight, vertex) else { return None };
         if !scattered.crossed || scene.wall(hit.object).is_none() {
             return None;
         }
-        Some(Passed { start: self.start(self.last_vertex.p)?, dir: self.ray.dir })
+        Some(PassedWall { start: self.start(self.last_vertex.p)?, dir: self.ray.dir })
     }
 
     /// What a light sample from `p`, in the medium that the path is in, starts with.

@@ -11,7 +11,7 @@ pub enum Sight {
     /// Through a wall at which light samples bend; the path has not passed one since.
     Behind,
     /// The path has passed such a wall.
-    Past(Passed),
+    Past(PassedWall),
 }
 
 /// Where a light sample that bends starts.
@@ -27,7 +27,7 @@ pub struct Start {
 
 /// A wall that a path has passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Passed {
+pub struct PassedWall {
     /// Where light was sampled.
     pub start: Start,
     /// In which direction the path went from there.
