@@ -5,7 +5,7 @@
 //! [`Allocation::ByError`] gives pixel `i` samples in proportion to
 //!
 //! ```text
-//! w_i = Σ_j s_j / |i − j|²  /  Σ_j 1 / |i − j|²        [radiance]
+//! w_i = Σ_j s_j / |i − j|²  /  Σ_j 1 / |i − j|²        [W·m⁻²·sr⁻¹]
 //! ```
 //!
 //! `s_j` being the standard deviation of the samples of pixel `j`, over the pixels around `i` without `i` itself.
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn an_endless_render_has_an_end_that_is_a_number() {
-        let plan = Plan::by_error(&film(40, 8, |x| f64::from(x)), u32::MAX);
+        let plan = Plan::by_error(&film(40, 8, f64::from), u32::MAX);
         assert!(plan.end > 1 << 30 && plan.total() <= 320 * u64::from(u32::MAX));
     }
 }
