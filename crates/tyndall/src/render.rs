@@ -117,13 +117,10 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
     let samples = AtomicU64::new(0);
     let stopped = AtomicBool::new(false);
 
-    // A first picture comes at once, and later ones cost little to show. Where pixels get up to sixteen times as many samples
-    // as others, a tile must still hold them.
-    let step = if settings.allocation == Allocation::Even { 32 } else { FIRST_LOOK };
     let mut level = 0;
     while level < plan.end && !stopped.load(Relaxed) {
-        level = level.saturating_add(level.clamp(1, step)).min(plan.end);
-        let total = plan.total();
+        level = plan.next_level(level);
+        let total = plan.total;
         tiles.par_iter_mut().with_max_len(1).for_each(|tile| {
             if observer.cancelled() {
                 stopped.store(true, Relaxed);
@@ -148,10 +145,8 @@ fn tiles_of(crop: Crop, layers: usize) -> Vec<Tile> {
     // Tiles lie on a grid fixed to the image, not to the crop.
     for y in crop.min.1 / TILE..crop.max.1.div_ceil(TILE) {
         for x in crop.min.0 / TILE..crop.max.0.div_ceil(TILE) {
-            let area = Crop {
-                min: (crop.min.0.max(x * TILE), crop.min.1.max(y * TILE)),
-                max: (crop.max.0.min((x + 1) * TILE), crop.max.1.min((y + 1) * TILE)),
-            };
+            let tile = Crop { min: (x * TILE, y * TILE), max: ((x + 1) * TILE, (y + 1) * TILE) };
+            let area = crop.common(tile);
             let pixels = vec![Pixel::default(); (area.width() * area.height()) as usize];
             if !pixels.is_empty() {
                 let cells = vec![Cell::default(); pixels.len() * layers];
@@ -168,8 +163,7 @@ fn copy_tiles(tiles: &[Tile], film: &mut Film) {
     for tile in tiles {
         let columns = tile.area.width() as usize;
         for (row, source) in tile.pixels.chunks(columns).enumerate() {
-            let y = tile.area.min.1 - crop.min.1 + row as u32;
-            let start = (y * crop.width() + (tile.area.min.0 - crop.min.0)) as usize;
+            let start = crop.index((tile.area.min.0, tile.area.min.1 + row as u32));
             film.pixels[start..start + columns].copy_from_slice(source);
             for (i, layer) in film.layers.iter_mut().enumerate() {
                 let cells = tile.cells.iter().skip(row * columns * layers + i).step_by(layers);

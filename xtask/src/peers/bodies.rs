@@ -6,6 +6,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use anyhow::{Result, ensure};
+use testkit::Stream;
 
 use crate::shell::root;
 
@@ -52,11 +53,8 @@ fn write_lock(path: &Path, strands: u32) -> Result<()> {
         return Ok(());
     }
     let mut out = BufWriter::new(File::create(path)?);
-    let mut drawn = 0_u32;
-    let mut between = |low: f64, high: f64| {
-        drawn += 1;
-        low + (high - low) * f64::from(hash(drawn)) / 4_294_967_296.0
-    };
+    let mut stream = Stream::new(0);
+    let mut between = |low: f64, high: f64| low + (high - low) * stream.next_f64();
     for _ in 0..strands {
         let (away, turn) = (6.0 * between(0.0, 1.0).sqrt(), between(0.0, 2.0 * PI));
         let mut at = [away * turn.cos(), away * turn.sin()];
@@ -68,13 +66,6 @@ fn write_lock(path: &Path, strands: u32) -> Result<()> {
         writeln!(out)?;
     }
     Ok(out.flush()?)
-}
-
-/// Bits that look random (Wellons 2018, `lowbias32`).
-fn hash(x: u32) -> u32 {
-    let x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
-    let x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
-    x ^ (x >> 16)
 }
 
 /// Writes a ball, unless it is there; returns the number of its triangles.

@@ -51,7 +51,7 @@ pub(crate) struct Options {
     control: bool,
 }
 
-/// A scene of Mitsuba's in the repository, or one of those that are made from them.
+/// A scene of Mitsuba's in the repository, or one of those that [`bodies`] makes.
 pub(crate) fn scene_file(scene: &str) -> PathBuf {
     if scene.ends_with(bodies::MESHED) || scene == bodies::HAIR {
         return root().join(format!("target/bench/{scene}.xml"));

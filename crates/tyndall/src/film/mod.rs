@@ -60,7 +60,7 @@ impl Crop {
     /// The part of this crop that lies within an image.
     #[must_use]
     pub fn within(self, width: u32, height: u32) -> Self {
-        Self { min: self.min, max: (self.max.0.min(width), self.max.1.min(height)) }
+        self.common(Self::full(width, height))
     }
 }
 

@@ -142,7 +142,7 @@ impl Path {
 
     /// A lamp to aim at, where that is worth the while.
     #[inline]
-    pub(super) fn lamp(&mut self, scene: &Scene, settings: &VolPath) -> Option<Bounds> {
+    fn lamp(&mut self, scene: &Scene, settings: &VolPath) -> Option<Bounds> {
         let Inside::Medium { id, coefficients } = &self.inside else { return None };
         let is_cut = settings.max_depth.is_some_and(|limit| self.history.depth() >= limit);
         if settings.deep == Deep::Traced || is_cut || !scene.aims(*id, coefficients) {

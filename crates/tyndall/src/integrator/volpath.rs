@@ -95,11 +95,10 @@ impl Path {
     #[inline]
     pub fn step(&mut self, scene: &Scene, settings: &VolPath, sink: &mut impl Sink, tally: &mut Tally) -> Status {
         let scene = self.world(scene);
-        let lamp = self.lamp(scene, settings);
         let mut lamps = Lamps { scene, settings, sink: &mut *sink };
-        let event = match self.pass_open(scene, lamp, &mut lamps, tally) {
+        let event = match self.pass_open(scene, &mut lamps, tally) {
             Some(event) => event,
-            None => self.next_event_past(scene, lamp, &mut lamps, tally),
+            None => self.next_event_past(scene, &mut lamps, tally),
         };
         self.respond(event, scene, settings, sink, tally)
     }

@@ -58,25 +58,16 @@ impl Path {
     /// Samples a free flight, looks for a surface before its end, and weighs the path for what it found.
     #[inline]
     pub fn next_event<'s>(&mut self, scene: &'s Scene, tally: &mut Tally) -> Event<'s> {
-        self.next_event_past(scene, None, &mut (), tally)
+        self.next_event_past(scene, &mut (), tally)
     }
 
-    /// The same past a lamp, at which another collision is aimed.
+    /// The same past a lamp, if there is one, at which another collision is aimed.
     #[inline]
-    pub fn next_event_past<'s>(
-        &mut self,
-        scene: &'s Scene,
-        lamp: Option<Bounds>,
-        aiming: &mut impl Aiming,
-        tally: &mut Tally,
-    ) -> Event<'s> {
+    pub fn next_event_past<'s>(&mut self, scene: &'s Scene, aiming: &mut impl Aiming, tally: &mut Tally) -> Event<'s> {
         if let Some(collision) = self.unfinished_collision(scene) {
             return collision;
         }
-        let (flight, lamp) = match self.unfinished_flight() {
-            Some(flight) => (flight, None),
-            None => (self.sample_flight(), lamp),
-        };
+        let (flight, lamp) = self.begin_flight(aiming);
         tally.rays += 1;
         if lamp.is_none() {
             let hit = scene.first_surface(&self.ray, flight);
@@ -86,6 +77,16 @@ impl Path {
         let aim = self.aim(scene, lamp, hit.map_or(f32::INFINITY, |hit| hit.t), aiming, tally);
         let hit = hit.filter(|hit| hit.t < flight + scene.rounding(&self.ray, flight));
         self.arrive(scene, hit, flight, aim, tally)
+    }
+
+    /// A flight that was left under way; or another, and a lamp to aim at along it [length].
+    #[inline]
+    pub(super) fn begin_flight(&mut self, aiming: &mut impl Aiming) -> (f32, Option<Bounds>) {
+        if let Some(flight) = self.unfinished_flight() {
+            return (flight, None);
+        }
+        let lamp = aiming.lamp(self);
+        (self.sample_flight(), lamp)
     }
 
     /// Aims at a lamp from where the path is, along the way that it goes until `end` [length].
@@ -138,7 +139,7 @@ impl Path {
 
     /// A distance with density `σ_t exp(−σ_t s)` in the hero's lane; infinite where the hero meets nothing.
     #[inline]
-    pub(super) fn sample_flight(&mut self) -> f32 {
+    fn sample_flight(&mut self) -> f32 {
         match self.inside.coefficients() {
             None => f32::INFINITY,
             Some(coefficients) => {

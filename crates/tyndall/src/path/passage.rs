@@ -5,16 +5,15 @@
 //! search has not looked far enough another goes on.
 
 use super::{Event, Path, aim::Aiming};
-use crate::{math::Bounds, scene::Scene, shape::Passed, tally::Tally};
+use crate::{scene::Scene, shape::Passed, tally::Tally};
 
 impl Path {
-    /// The next event behind all boundaries that are open, where [`Scene::open_to_paths`] knows them, past a `lamp` if there is one to
-    /// aim at. `None` leaves a flight for [`Self::next_event`] to follow, or has done nothing.
+    /// The next event behind all boundaries that are open, where [`Scene::open_to_paths`] knows them, past lamps if there are any to
+    /// aim at. `None` leaves a flight for [`Self::next_event_past`] to follow, or has done nothing.
     #[inline]
     pub fn pass_open<'s>(
         &mut self,
         scene: &'s Scene,
-        mut lamp: Option<Bounds>,
         aiming: &mut impl Aiming,
         tally: &mut Tally,
     ) -> Option<Event<'s>> {
@@ -22,59 +21,39 @@ impl Path {
         if self.collision_is_due() {
             return None;
         }
-        let mut flight = match self.unfinished_flight() {
-            Some(flight) => {
-                lamp = None;
-                flight
-            }
-            None => self.sample_flight(),
-        };
+        let (mut flight, mut lamp) = self.begin_flight(aiming);
         let way = self.ray;
         let reach = if lamp.is_some() { f32::INFINITY } else { self.reach(scene, flight) };
         tally.rays += 1;
         let mut passed = Passed::default();
         let wall = scene.geometry.intersect_but(&way, reach, open, &mut passed);
         let end = wall.map_or(reach, |wall| wall.t);
-        let Some(surfaces) = passed.surfaces(&scene.geometry, &way) else {
+        let Some(mut surfaces) = passed.surfaces(&scene.geometry, &way) else {
             self.leave_flight(flight);
             return None;
         };
         let mut from = 0.0;
-        for (t, surface) in surfaces {
-            if t >= end {
-                break;
-            }
-            let aim = self.aim(scene, lamp, t - from, aiming, tally);
-            if t - from >= flight + scene.rounding(&self.ray, flight) {
+        loop {
+            let boundary = surfaces.next().filter(|(t, _)| *t < end);
+            let to = boundary.map_or(end, |(t, _)| t);
+            // Only a way that is known to its end can be aimed along.
+            let is_known = boundary.is_some() || wall.is_some() || end == f32::INFINITY;
+            let aim = self.aim(scene, lamp.filter(|_| is_known), to - from, aiming, tally);
+            if to - from >= flight + scene.rounding(&self.ray, flight) {
                 return Some(self.arrive(scene, None, flight, aim, tally));
             }
-            self.pass(t - from);
+            let Some((_, surface)) = boundary else { break };
+            self.pass(to - from);
             self.cross(scene, &surface);
-            from = t;
-            lamp = aiming.lamp(self);
-            flight = self.sample_flight();
+            from = to;
+            (flight, lamp) = self.begin_flight(aiming);
         }
-        let stop = from + flight + scene.rounding(&self.ray, flight);
-        match wall {
-            Some(wall) => {
-                let aim = self.aim(scene, lamp, wall.t - from, aiming, tally);
-                if stop <= wall.t {
-                    return Some(self.arrive(scene, None, flight, aim, tally));
-                }
-                self.pass(wall.t - from);
-                Some(Event::Surface(scene.geometry.interaction(&way, &wall)))
-            }
-            None if stop <= reach => {
-                // Only a way that is known to its end can be aimed along.
-                let lamp = lamp.filter(|_| reach == f32::INFINITY);
-                let aim = self.aim(scene, lamp, f32::INFINITY, aiming, tally);
-                Some(self.arrive(scene, None, flight, aim, tally))
-            }
-            None => {
-                self.leave_flight(flight);
-                None
-            }
-        }
+        let Some(wall) = wall else {
+            self.leave_flight(flight);
+            return None;
+        };
+        self.pass(wall.t - from);
+        Some(Event::Surface(scene.geometry.interaction(&way, &wall)))
     }
 
     /// How far to look: as far as the flight, or to the end where it is likely to leave the medium.

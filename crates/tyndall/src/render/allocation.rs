@@ -44,58 +44,67 @@ pub enum Allocation {
 /// How many samples each pixel is to get.
 #[derive(Debug)]
 pub(super) struct Plan {
-    /// Relative to the mean of all, as pixels lie on a film \[1\].
-    shares: Vec<f64>,
+    /// By pixel, as they lie on a film, relative to the mean of all; `None` if all get as many \[1\].
+    shares: Option<Vec<f64>>,
     /// The level at the end: samples of a pixel whose share is 1.
     pub(super) end: u32,
+    /// Samples of all pixels at the end.
+    pub(super) total: u64,
 }
 
 impl Plan {
     /// `spp` for each of so many pixels.
     pub(super) fn even(pixels: usize, spp: u32) -> Self {
-        Self { shares: vec![1.0; pixels], end: spp }
+        Self { shares: None, end: spp, total: pixels as u64 * u64::from(spp) }
     }
 
     /// A mean of `spp` for each pixel, by what a first look found.
     pub(super) fn by_error(film: &Film, spp: u32) -> Self {
-        let deviations: Vec<f64> = film.pixels.iter().map(deviation).collect();
-        let around: Vec<f64> = film.crop.pixels().map(|pixel| around(film.crop, &deviations, pixel)).collect();
-        let mean = around.iter().sum::<f64>() / around.len() as f64;
+        let even = Self::even(film.pixels.len(), spp);
+        let mut w = deviations_around(film);
+        let mean = w.iter().sum::<f64>() / w.len() as f64;
         if !(mean > 0.0 && mean.is_finite()) {
-            return Self::even(film.pixels.len(), spp);
+            return even;
         }
-        let mut plan = Self { shares: shares(&around.iter().map(|w| w / mean).collect::<Vec<_>>()), end: spp };
-        plan.end = plan.level_of(u64::from(spp) * film.pixels.len() as u64);
-        plan
+        for w in &mut w {
+            *w /= mean;
+        }
+        let shares = shares(&w);
+        let end = level_of(&shares, even.total);
+        Self { end, total: sum(&shares, end), shares: Some(shares) }
     }
 
     /// How many samples a pixel has got at a level.
     pub(super) fn samples(&self, pixel: usize, level: u32) -> u32 {
-        let share = self.shares[pixel];
-        if share == 1.0 || level <= FIRST_LOOK {
-            return level;
-        }
-        ((share * f64::from(level)) as u32).max(FIRST_LOOK)
+        self.shares.as_ref().map_or(level, |shares| samples(shares[pixel], level))
     }
 
-    /// All of them at the end.
-    pub(super) fn total(&self) -> u64 {
-        self.sum(self.end)
+    /// The level at which the next picture is shown. A first one comes at once, and later ones cost little to show; where pixels get
+    /// up to [`MOST`] times as many samples as others, a tile must still hold them.
+    pub(super) fn next_level(&self, level: u32) -> u32 {
+        let step = if self.shares.is_none() { 32 } else { FIRST_LOOK };
+        level.saturating_add(level.clamp(1, step)).min(self.end)
     }
+}
 
-    fn sum(&self, level: u32) -> u64 {
-        (0..self.shares.len()).map(|pixel| u64::from(self.samples(pixel, level))).sum()
-    }
+/// How many samples a pixel with this share has got at a level.
+fn samples(share: f64, level: u32) -> u32 {
+    if level <= FIRST_LOOK { level } else { ((share * f64::from(level)) as u32).max(FIRST_LOOK) }
+}
 
-    /// The highest level at which all pixels together have got no more than `samples`.
-    fn level_of(&self, samples: u64) -> u32 {
-        let (mut low, mut high) = (FIRST_LOOK, u32::MAX);
-        while low < high {
-            let middle = high - (high - low) / 2;
-            if self.sum(middle) <= samples { low = middle } else { high = middle - 1 }
-        }
-        low
+/// Those of all pixels.
+fn sum(shares: &[f64], level: u32) -> u64 {
+    shares.iter().map(|share| u64::from(samples(*share, level))).sum()
+}
+
+/// The highest level at which all pixels together have got no more than `total` samples.
+fn level_of(shares: &[f64], total: u64) -> u32 {
+    let (mut low, mut high) = (FIRST_LOOK, u32::MAX);
+    while low < high {
+        let middle = high - (high - low) / 2;
+        if sum(shares, middle) <= total { low = middle } else { high = middle - 1 }
     }
+    low
 }
 
 /// `k w` between [`LEAST`] and [`MOST`], with the `k` that makes their mean 1, by bisection: as more are at the least the others
@@ -111,15 +120,20 @@ fn shares(w: &[f64]) -> Vec<f64> {
     w.iter().map(|w| share(low, *w)).collect()
 }
 
-/// Standard deviation of the samples of a pixel, `√(Σ_c (Σx² − (Σx)²/n) / (n − 1))` over its channels; 0 for fewer than two.
-fn deviation(pixel: &Pixel) -> f64 {
-    let n = pixel.count as f64;
-    let spread: f64 = (0..3).map(|c| (pixel.sum_of_squares[c] - pixel.sum[c] * pixel.sum[c] / n).max(0.0)).sum();
-    if pixel.count < 2 { 0.0 } else { (spread / (n - 1.0)).sqrt() }
+/// `w_i` of the manual, by pixel; 0 for a pixel that has no other beside it [W·m⁻²·sr⁻¹].
+fn deviations_around(film: &Film) -> Vec<f64> {
+    let deviations: Vec<f64> = film.pixels.iter().map(deviation).collect();
+    film.crop.pixels().map(|pixel| mean_around(film.crop, &deviations, pixel)).collect()
 }
 
-/// `w_i` of the manual; 0 for a pixel that has no other beside it.
-fn around(crop: Crop, deviations: &[f64], (x, y): (u32, u32)) -> f64 {
+/// Standard deviation of the samples of a pixel, all channels together: `√(n Σ_c e_c²)`, `e` being the standard error of the mean
+/// of `n` [W·m⁻²·sr⁻¹].
+fn deviation(pixel: &Pixel) -> f64 {
+    let squares = pixel.standard_error().map(|error| f64::from(error).powi(2));
+    (pixel.count as f64 * squares.iter().sum::<f64>()).sqrt()
+}
+
+fn mean_around(crop: Crop, deviations: &[f64], (x, y): (u32, u32)) -> f64 {
     let near =
         Crop { min: (x.saturating_sub(RADIUS), y.saturating_sub(RADIUS)), max: (x + RADIUS + 1, y + RADIUS + 1) };
     let (mut sum, mut weights) = (0.0, 0.0);
@@ -151,11 +165,7 @@ mod tests {
         let before = film(9, 9, f64::from);
         let mut after = before.clone();
         after.pixels[4 * 9 + 4].add([1e6, 0.0, 0.0]);
-        let of = |film: &Film| {
-            let deviations: Vec<f64> = film.pixels.iter().map(deviation).collect();
-            film.crop.pixels().map(|pixel| around(film.crop, &deviations, pixel)).collect::<Vec<_>>()
-        };
-        let (before, after) = (of(&before), of(&after));
+        let (before, after) = (deviations_around(&before), deviations_around(&after));
         assert_eq!(before[4 * 9 + 4], after[4 * 9 + 4]);
         assert!(after[4 * 9 + 5] > 100.0 * before[4 * 9 + 5], "its neighbours do get more");
     }
@@ -174,7 +184,7 @@ mod tests {
         for spp in [9, 16, 64, 1000] {
             let film = film(40, 8, |x| f64::from(x * x));
             let plan = Plan::by_error(&film, spp);
-            let mean = plan.total() as f64 / 320.0;
+            let mean = plan.total as f64 / 320.0;
             assert!(mean <= f64::from(spp) && mean > f64::from(spp) - 2.0, "{mean} of {spp}");
         }
     }
@@ -199,6 +209,6 @@ mod tests {
     #[test]
     fn an_endless_render_has_an_end_that_is_a_number() {
         let plan = Plan::by_error(&film(40, 8, f64::from), u32::MAX);
-        assert!(plan.end > 1 << 30 && plan.total() <= 320 * u64::from(u32::MAX));
+        assert!(plan.end > 1 << 30 && plan.total <= 320 * u64::from(u32::MAX));
     }
 }
