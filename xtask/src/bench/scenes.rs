@@ -4,8 +4,9 @@ use anyhow::Result;
 
 use super::judge;
 use crate::peers::mitsuba::Mitsuba;
-use crate::peers::runs::{Runs, Side, Turn};
+use crate::peers::runs::{Runs, Side, Turn, images};
 use crate::peers::settings::{Duel, Variant, duels};
+use crate::peers::statistics::{Tails, tails};
 use crate::peers::tyndall::Tyndall;
 use crate::peers::{directory, scene_file};
 
@@ -42,13 +43,19 @@ fn race(duel: &Duel, target: f64, turns: u32, mitsuba: &Mitsuba, tyndall: &Tynda
         let label = directory.join("tyndall");
         ours.push(tyndall.render(&scene_file(duel.scene), duel.tyndall_spp, turn, &label, duel.arguments)?);
     }
+    let told = |runs: &[Runs]| {
+        let Tails { excess_kurtosis, largest } = tails(&images(runs));
+        format!("excess kurtosis {excess_kurtosis:.2}, largest pixel {largest:.0} errors up")
+    };
+    let tails = told(&ours);
     let ours = Side::of(&ours, duel.tyndall_spp);
-    println!("{}: tyndall {:.3e} 1/(MSE·CPU s)", duel.scene, ours.efficiency);
+    println!("{}: tyndall {:.3e} 1/(MSE·CPU s); {tails}", duel.scene, ours.efficiency);
     let mut worst = f64::INFINITY;
     for (rival, runs) in rivals.iter().zip(&theirs) {
         let side = Side::of(runs, rival.mitsuba_spp);
         let ratio = ours.efficiency_over(&side);
-        println!("{}: Mitsuba {} {:.3e}, tyndall is {ratio:.2}×", duel.scene, rival.variant.name(), side.efficiency);
+        let (name, tails) = (rival.variant.name(), told(runs));
+        println!("{}: Mitsuba {name} {:.3e}; {tails}; tyndall is {ratio:.2}×", duel.scene, side.efficiency);
         worst = worst.min(ratio);
     }
     judge(&format!("{} over the better Mitsuba", duel.scene), worst, "×", worst >= target, &format!("{target}×"));

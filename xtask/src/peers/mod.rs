@@ -51,8 +51,14 @@ pub(crate) struct Options {
     control: bool,
 }
 
+/// The cube that is so many mean free paths across.
+pub(crate) const THICKNESS: &str = "thickness";
+
 /// A scene of Mitsuba's in the repository, or one of those that [`bodies`] makes.
 pub(crate) fn scene_file(scene: &str) -> PathBuf {
+    if scene == THICKNESS {
+        return root().join("xtask/scenes/thickness.xml");
+    }
     if scene.ends_with(bodies::MESHED) || scene == bodies::HAIR {
         return root().join(format!("target/bench/{scene}.xml"));
     }

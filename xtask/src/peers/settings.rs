@@ -33,7 +33,7 @@ pub(crate) struct Duel {
     /// Mitsuba's backend
     pub(crate) variant: Variant,
     /// Values of the scene's `$parameters` for Mitsuba, `name=value` separated by blanks
-    pub(crate) parameters: &'static str,
+    pub(crate) parameters: String,
     /// Samples a pixel in one run of Mitsuba: about 3 CPU seconds
     pub(crate) mitsuba_spp: u32,
     /// Samples a pixel in one run of tyndall: about as long; more, where its start would take most of that
@@ -53,10 +53,10 @@ const ADAPTIVE: &[&str] = &["--adaptive"];
 /// All scenes, the quick ones first.
 pub(crate) fn duels() -> Vec<Duel> {
     use Variant::{Llvm, Scalar};
-    let even = |scene, variant, parameters, mitsuba_spp, tyndall_spp| Duel {
+    let even = |scene, variant, parameters: &str, mitsuba_spp, tyndall_spp| Duel {
         scene,
         variant,
-        parameters,
+        parameters: parameters.to_owned(),
         mitsuba_spp,
         tyndall_spp,
         arguments: &[],

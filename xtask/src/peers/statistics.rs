@@ -114,6 +114,35 @@ pub(crate) fn mean_squared_error(runs: &[Image]) -> f64 {
     variances.sum::<f64>() / (3 * pixels) as f64
 }
 
+/// How heavy the tails of pixel estimates are.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tails {
+    /// Excess kurtosis, over pixels and channels: `Σ κ₄ / Σ σ⁴`, each estimated without bias from the spread of the runs (k-statistics:
+    /// Fisher 1930). 0 for a normal distribution; that of a mean of N samples is 1/N of that of one
+    pub(crate) excess_kurtosis: f64,
+    /// How far the largest estimate is above the mean of its pixel, in root mean squared errors of the picture
+    pub(crate) largest: f64,
+}
+
+/// The tails of four runs or more.
+pub(crate) fn tails(runs: &[Image]) -> Tails {
+    let count = runs.len() as f64;
+    let (mut fourth, mut squares, mut largest) = (0.0, 0.0, 0.0f64);
+    for (pixel, channel) in (0..runs[0].pixels.len()).flat_map(|pixel| (0..3).map(move |channel| (pixel, channel))) {
+        let values = || runs.iter().map(|image| f64::from(image.pixels[pixel][channel]));
+        let mean = values().sum::<f64>() / count;
+        let moment = |power| values().map(|value| (value - mean).powi(power)).sum::<f64>() / count;
+        let (m2, m4) = (moment(2), moment(4));
+        let k2 = m2 * count / (count - 1.0);
+        let k4 = count * count * ((count + 1.0) * m4 - 3.0 * (count - 1.0) * m2 * m2)
+            / ((count - 1.0) * (count - 2.0) * (count - 3.0));
+        fourth += k4;
+        squares += (count - 1.0) / (count + 1.0) * (k2 * k2 - k4 / count);
+        largest = values().map(|value| value - mean).fold(largest, f64::max);
+    }
+    Tails { excess_kurtosis: fourth / squares, largest: largest / mean_squared_error(runs).sqrt() }
+}
+
 /// The probability that the smallest of `count` independent uniform values is below `p`: `1 − (1 − p)^count`. Šidák's
 /// correction of a probability, as [`testkit::sidak`] is of a level.
 fn family_p(p: f64, count: usize) -> f64 {
@@ -336,6 +365,26 @@ mod tests {
     fn the_error_of_a_run_is_the_spread_between_runs() {
         let error = mean_squared_error(&noisy_runs(9, 8, |_, _| 2.0));
         assert!((error / 4.0 - 1.0).abs() < 0.03, "{error}");
+    }
+
+    /// That of an exponential number is 6; a mean of ten has 0.6. In 8 runs of 128² pixels.
+    #[test]
+    fn tails_are_those_of_the_distribution() {
+        let found = tails(&noisy_runs(10, 8, |_, _| 2.0));
+        assert!((found.excess_kurtosis / 6.0 - 1.0).abs() < 0.1, "{found:?}");
+        let many = noisy_runs(11, 80, |_, _| 2.0);
+        let means: Vec<Image> = many.chunks(10).map(mean_of).collect();
+        let found = tails(&means);
+        assert!((found.excess_kurtosis - 0.6).abs() < 0.1 && found.largest > 4.0, "{found:?}");
+    }
+
+    fn mean_of(runs: &[Image]) -> Image {
+        let mut mean = runs[0].clone();
+        for (i, pixel) in mean.pixels.iter_mut().enumerate() {
+            *pixel =
+                [0, 1, 2].map(|channel| runs.iter().map(|run| run.pixels[i][channel]).sum::<f32>() / runs.len() as f32);
+        }
+        mean
     }
 
     #[test]

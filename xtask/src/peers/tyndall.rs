@@ -40,7 +40,7 @@ impl Tyndall {
     pub(crate) fn render(&self, scene: &Path, spp: u32, turn: Turn, label: &Path, extra: &[&str]) -> Result<Runs> {
         let mut runs = Runs { images: Vec::new(), cpu_seconds: 0.0 };
         for run in 0..turn.runs {
-            let image = PathBuf::from(format!("{}_{}_{run}.exr", label.display(), turn.index));
+            let image = image_of(label, turn, run);
             let mut command = self.render_command(scene, spp, &image);
             command.args(["--seed", &(turn.seed() + run).to_string()]).args(extra);
             command.arg("--json").arg(image.with_extension("json"));
@@ -51,6 +51,17 @@ impl Tyndall {
         }
         Ok(runs)
     }
+}
+
+fn image_of(label: &Path, turn: Turn, run: u32) -> PathBuf {
+    PathBuf::from(format!("{}_{}_{run}.exr", label.display(), turn.index))
+}
+
+/// What the first run of a turn says of itself.
+pub(crate) fn report(label: &Path, turn: Turn) -> Result<serde_json::Value> {
+    let path = image_of(label, turn, 0).with_extension("json");
+    let text = std::fs::read_to_string(&path).with_context(|| format!("no report at {}", path.display()))?;
+    Ok(serde_json::from_str(&text)?)
 }
 
 /// CPU seconds of all threads of all children that have ended: fields 16 and 17 of `/proc/self/stat`, in ticks of

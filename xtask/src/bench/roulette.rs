@@ -6,14 +6,13 @@
 //! every N, if there is a variance; where there is none, `MSE · N` climbs with N, and the mean is short of light.
 //! The book's page `docs/src/roulette.md` derives it.
 
-mod plot;
-
 use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
 
+use super::plot::{Curve, Panel as Axes, Plot};
 use crate::peers::image::Image;
 use crate::peers::mitsuba::Mitsuba;
 use crate::peers::report::figure;
@@ -94,7 +93,7 @@ pub(super) fn run(tyndall: &Tyndall, seconds: f64) -> Result<()> {
     let stem = root().join("target/bench/roulette");
     std::fs::write(stem.with_extension("md"), table)?;
     std::fs::write(stem.with_extension("json"), serde_json::to_string_pretty(&panels)?)?;
-    plot::write(&stem.with_extension("svg"), &panels)?;
+    plot(&panels).write(&stem.with_extension("svg"))?;
     println!("{}", stem.with_extension("svg").display());
     Ok(())
 }
@@ -131,7 +130,7 @@ fn render(
         let duel = Duel {
             scene: cube.scene,
             variant: Variant::Scalar,
-            parameters,
+            parameters: parameters.to_owned(),
             mitsuba_spp: spp,
             tyndall_spp: spp,
             arguments: &[],
@@ -183,6 +182,14 @@ fn with_standard_error(values: &[f64]) -> (f64, f64) {
     let middle = values.iter().sum::<f64>() / count;
     let squares = values.iter().map(|value| (value - middle).powi(2)).sum::<f64>();
     (middle, (squares / (count - 1.0) / count).sqrt())
+}
+
+/// A level line is a finite variance, a climbing one is none.
+fn plot(panels: &[Panel]) -> Plot<'_> {
+    let points = |course: &Course| course.levels.iter().map(|l| [f64::from(l.spp), l.mse_n.0, l.mse_n.1]).collect();
+    let curve = |course: &Course| Curve { name: course.side.name, points: points(course) };
+    let axes = |panel: &Panel| Axes { title: panel.cube.title, curves: panel.courses.iter().map(curve).collect() };
+    Plot { across: "samples a pixel, N", up: "MSE · N", panels: panels.iter().map(axes).collect() }
 }
 
 /// N downwards, sides across.
