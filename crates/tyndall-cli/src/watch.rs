@@ -72,7 +72,7 @@ impl Observer for Watch<'_> {
         interrupt::requested() || self.late()
     }
 
-    fn tile_done(&self, progress: render::Progress) {
+    fn batch_done(&self, progress: render::Progress) {
         self.progress.tell(progress);
     }
 

@@ -7,6 +7,7 @@ mod allocation;
 
 pub use allocation::Allocation;
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
@@ -26,6 +27,12 @@ use allocation::{FIRST_LOOK, Plan};
 
 /// Edge of a tile [pixels].
 const TILE: u32 = 16;
+
+/// Samples that are taken together, where there are so many. Few paths deep in a medium are much longer than the others: the more
+/// begin together, the more of these walk side by side.
+const BATCH: u64 = 1 << 12;
+/// Batches a thread at least, so that none waits long for the others.
+const BATCHES: usize = 4;
 
 /// What to render of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,12 +75,12 @@ pub struct Progress {
 
 /// Watches a render and may stop it. Called from the render's threads.
 pub trait Observer: Sync {
-    /// Asked before every tile; `true` leaves the rest undone.
+    /// Asked before every batch of tiles; `true` leaves the rest undone.
     fn cancelled(&self) -> bool {
         false
     }
-    /// A tile has got more samples.
-    fn tile_done(&self, _progress: Progress) {}
+    /// A batch of tiles has got more samples.
+    fn batch_done(&self, _progress: Progress) {}
     /// Every pixel has got more samples: a good moment to show the image.
     fn pass_done(&self, _film: &Film, _progress: Progress) {}
 }
@@ -121,14 +128,16 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
     while level < plan.end && !stopped.load(Relaxed) {
         level = plan.next_level(level);
         let total = plan.total;
-        tiles.par_iter_mut().with_max_len(1).for_each(|tile| {
+        let wanted = |pixel| plan.samples(film.crop.index(pixel), level);
+        let batch = tiles_in_a_batch(&tiles, wanted);
+        tiles.par_chunks_mut(batch).with_max_len(1).for_each(|tiles| {
             if observer.cancelled() {
                 stopped.store(true, Relaxed);
                 return;
             }
-            let taken = work.render_tile(&layers, |pixel| plan.samples(film.crop.index(pixel), level), tile);
+            let taken = work.render_batch(&layers, wanted, tiles);
             let samples = samples.fetch_add(taken, Relaxed) + taken;
-            observer.tile_done(Progress { samples, total });
+            observer.batch_done(Progress { samples, total });
         });
         copy_tiles(&tiles, &mut film);
         observer.pass_done(&film, Progress { samples: samples.load(Relaxed), total });
@@ -155,6 +164,23 @@ fn tiles_of(crop: Crop, layers: usize) -> Vec<Tile> {
         }
     }
     tiles
+}
+
+/// How many tiles make a batch.
+fn tiles_in_a_batch(tiles: &[Tile], wanted: impl Fn((u32, u32)) -> u32) -> usize {
+    let samples: u64 =
+        tiles.iter().map(|tile| tile.missing(&wanted).map(|(.., indices)| indices.len() as u64).sum::<u64>()).sum();
+    let (count, batches) = (tiles.len(), BATCHES * rayon::current_num_threads());
+    let by_size = (BATCH * count as u64).checked_div(samples).map_or(count, |tiles| tiles as usize);
+    by_size.min(count / batches).max(1)
+}
+
+impl Tile {
+    /// The samples that its pixels still want: which of its pixels, where it is, and the indices.
+    fn missing(&self, wanted: impl Fn((u32, u32)) -> u32) -> impl Iterator<Item = (usize, (u32, u32), Range<u32>)> {
+        let pixels = self.area.pixels().zip(&self.pixels).enumerate();
+        pixels.map(move |(i, (at, pixel))| (i, at, pixel.count as u32..wanted(at)))
+    }
 }
 
 fn copy_tiles(tiles: &[Tile], film: &mut Film) {
@@ -190,29 +216,32 @@ impl Work<'_> {
     }
 
     /// Takes samples until each pixel has as many as `wanted` says; returns how many that were.
-    fn render_tile(&self, layers: &[LayerKind], wanted: impl Fn((u32, u32)) -> u32, tile: &mut Tile) -> u64 {
+    fn render_batch(&self, layers: &[LayerKind], wanted: impl Fn((u32, u32)) -> u32, tiles: &mut [Tile]) -> u64 {
         let first = self.settings.first_sample;
         let mut seen = Vec::new();
-        for (i, (at, pixel)) in tile.area.pixels().zip(&tile.pixels).enumerate() {
-            let indices = pixel.count as u32..wanted(at);
-            seen.extend(indices.map(|k| (i, Seen::new(self.scene, self.settings, at, first.saturating_add(k)))));
+        for (tile, of) in tiles.iter().enumerate() {
+            for (i, at, indices) in of.missing(&wanted) {
+                let look = |k| Seen::new(self.scene, self.settings, at, first.saturating_add(k));
+                seen.extend(indices.map(|k| ((tile, i), look(k))));
+            }
         }
-        tile.tally.paths += seen.len() as u64;
+        let mut tally = Tally { paths: seen.len() as u64, ..Tally::default() };
         let passed: Vec<_> = seen.iter().filter(|(_, seen)| seen.weight != 0.0).map(|(_, seen)| seen.sample).collect();
         let parts = match self.apart {
-            Some((by, integrator)) => integrator.li_apart(self.scene, by, &passed, &mut tile.tally),
-            None => Parts::undivided(self.integrator.li_many(self.scene, &passed, &mut tile.tally)),
+            Some((by, integrator)) => integrator.li_apart(self.scene, by, &passed, &mut tally),
+            None => Parts::undivided(self.integrator.li_many(self.scene, &passed, &mut tally)),
         };
 
         let mut rays = 0..passed.len();
-        for (i, seen) in &seen {
-            let pixel = &mut tile.pixels[*i];
+        for ((tile, i), seen) in &seen {
+            let Tile { pixels, cells, .. } = &mut tiles[*tile];
+            let pixel = &mut pixels[*i];
             let Some(ray) = (seen.weight != 0.0).then(|| rays.next()).flatten() else {
                 pixel.add([0.0; 3]);
                 continue;
             };
             let radiance = parts.radiance[ray];
-            let (value, cells) = (seen.value(self.scene, radiance), &mut tile.cells[i * layers.len()..]);
+            let (value, cells) = (seen.value(self.scene, radiance), &mut cells[i * layers.len()..]);
             seen.fill(self.scene, layers, radiance, cells);
             if radiance.is_finite() && radiance.min_lane() >= 0.0 {
                 pixel.add(value);
@@ -221,10 +250,12 @@ impl Work<'_> {
                 }
             } else {
                 // Counted and located, and left out of the sums, which one such sample would spoil for good.
-                tile.tally.bad_sample(seen.pixel, seen.index, value);
+                tally.bad_sample(seen.pixel, seen.index, value);
                 pixel.add([0.0; 3]);
             }
         }
+        let first = &mut tiles[0].tally;
+        *first = std::mem::take(first).merged(&tally);
         seen.len() as u64
     }
 }

@@ -175,7 +175,7 @@ impl Observer for Watch {
         interrupt::requested() || self.enough.load(Relaxed)
     }
 
-    fn tile_done(&self, progress: render::Progress) {
+    fn batch_done(&self, progress: render::Progress) {
         self.progress.tell(progress);
     }
 

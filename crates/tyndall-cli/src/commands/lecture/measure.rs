@@ -212,7 +212,7 @@ impl Observer for Stopwatch<'_> {
         }
     }
 
-    fn tile_done(&self, progress: render::Progress) {
+    fn batch_done(&self, progress: render::Progress) {
         self.progress.tell(progress);
     }
 

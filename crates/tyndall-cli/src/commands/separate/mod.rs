@@ -200,7 +200,7 @@ impl Observer for Bench {
         interrupt::requested()
     }
 
-    fn tile_done(&self, progress: render::Progress) {
+    fn batch_done(&self, progress: render::Progress) {
         let samples = self.done.load(Relaxed) + progress.samples;
         self.progress.tell(render::Progress { samples, total: self.total });
     }
