@@ -1,7 +1,7 @@
 //! An emitting surface: radiance `L` from every point into the hemisphere of its normal (or both).
 //!
-//! Points are drawn uniformly in solid angle where a closed form exists (spheres by their cone; rectangles, Ureña et al.
-//! 2013), else uniformly in area, or nearly so, with density `d² p_A / |cos θ|` per steradian.
+//! Points are drawn uniformly in solid angle where a closed form exists and is worth its time (spheres by their cone; rectangles
+//! that are near, Ureña et al. 2013), else uniformly in area, or nearly so, with density `d² p_A / |cos θ|` per steradian.
 
 use std::f32::consts::PI;
 
@@ -13,6 +13,10 @@ use crate::{
     spectrum::{Lanes, Spectrum, Wavelengths},
     texture::TexturePoint,
 };
+
+/// A rectangle is near up to so many of its half diagonals. From farther away points that are uniform in area vary hardly more, and are
+/// found in a fifth of the time.
+const NEAR: f32 = 1.5;
 
 /// An emitting piece of surface.
 #[derive(Debug, Clone)]
@@ -310,7 +314,7 @@ impl AreaLight {
                 }
             }
             EmitterShape::Parallelogram { a, e1, e2, ng } => {
-                if let Some(rectangle) = SphericalRectangle::new(a, e1, e2, from.p) {
+                if let Some(rectangle) = seen_near(a, e1, e2, from.p) {
                     let uv = rectangle.sample(u);
                     return (flat(a, e1 * uv.x, e2 * uv.y, ng), rectangle.pdf());
                 }
@@ -332,7 +336,7 @@ impl AreaLight {
                 }
             }
             EmitterShape::Parallelogram { a, e1, e2, .. } => {
-                if let Some(rectangle) = SphericalRectangle::new(a, e1, e2, from.p) {
+                if let Some(rectangle) = seen_near(a, e1, e2, from.p) {
                     return rectangle.pdf();
                 }
             }
@@ -354,6 +358,14 @@ impl AreaLight {
         };
         self.luminance * area * cosine / d2
     }
+}
+
+/// A parallelogram as seen from a point, if it is a rectangle and [`NEAR`].
+#[inline]
+fn seen_near(a: Vec3, e1: Vec3, e2: Vec3, from: Vec3) -> Option<SphericalRectangle> {
+    let reach = 0.5 * NEAR;
+    let is_near = (a + (e1 + e2) * 0.5).distance_squared(from) < reach * reach * (e1 + e2).length_squared();
+    if is_near { SphericalRectangle::new(a, e1, e2, from) } else { None }
 }
 
 /// Cosine of the half angle under which a sphere is seen from outside; `None` from within or on it, where a cone is no
