@@ -295,7 +295,7 @@ impl Bsdf<'_> {
             Self::PrincipledThin(model) => model.eval(wo, wi),
             Self::Coated(model) => model.eval(wo, wi),
             Self::Measured(model) => model.eval(wo, wi),
-            Self::Hair(model) => model.eval(wo, wi),
+            Self::Hair(model) => model.eval_and_pdf(wo, wi).0,
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => Lanes::ZERO,
         }
     }
@@ -314,8 +314,17 @@ impl Bsdf<'_> {
             Self::PrincipledThin(model) => model.pdf(wo, wi),
             Self::Coated(model) => model.pdf(wo, wi),
             Self::Measured(model) => model.pdf(wo, wi),
-            Self::Hair(model) => model.pdf(wo, wi),
+            Self::Hair(model) => model.eval_and_pdf(wo, wi).1,
             Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Null => 0.0,
+        }
+    }
+
+    /// [`Self::eval`] and [`Self::pdf`], for which a fibre does the same work.
+    #[inline]
+    pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3) -> (Lanes, f32) {
+        match self {
+            Self::Hair(model) => model.eval_and_pdf(wo, wi),
+            _ => (self.eval(wo, wi), self.pdf(wo, wi)),
         }
     }
 

@@ -148,7 +148,7 @@ impl<'s> Vertex<'s> {
                 if !may_leave(bsdf, wi.z, dir.dot(hit.ng)) {
                     return (Lanes::ZERO, 0.0);
                 }
-                let (value, pdf) = (bsdf.eval(*wo, wi), bsdf.pdf(*wo, wi));
+                let (value, pdf) = bsdf.eval_and_pdf(*wo, wi);
                 match shadowing {
                     None => (value, pdf),
                     Some(alpha2) => (value * through_relief(*alpha2, wi.z, dir.dot(hit.ns)), pdf),

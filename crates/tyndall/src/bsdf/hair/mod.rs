@@ -60,6 +60,16 @@ impl Lobes {
     pub fn value(&self, p: usize) -> Lanes {
         self.share[p] * self.density[p] as f32
     }
+
+    /// `S` [1/sr].
+    fn sum(&self) -> Lanes {
+        self.value(0) + self.value(1) + self.value(2) + self.value(3)
+    }
+
+    /// The density of a direction where lobes are drawn with these odds [1/sr].
+    fn pdf(&self, odds: &[f64; 4]) -> f32 {
+        (0..4).map(|p| odds[p] * self.density[p]).sum::<f64>() as f32
+    }
 }
 
 impl Hair {
@@ -105,15 +115,9 @@ impl Hair {
         })
     }
 
-    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Lanes {
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3) -> (Lanes, f32) {
         let lobes = self.lobes(wo, wi);
-        lobes.value(0) + lobes.value(1) + lobes.value(2) + lobes.value(3)
-    }
-
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let Lobes { density, share } = self.lobes(wo, wi);
-        let odds = odds(&share);
-        (0..4).map(|p| odds[p] * density[p]).sum::<f64>() as f32
+        (lobes.sum(), lobes.pdf(&odds(&lobes.share)))
     }
 
     pub(super) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
@@ -142,10 +146,8 @@ impl Hair {
             DVec2::new(wo.y.into(), wo.z.into()).normalize_or(DVec2::X).rotate(DVec2::from_angle(round)) * cos_i;
         let wi = DVec3::new(sin_i, around.x, around.y).normalize().as_vec3();
 
-        let density = self.densities(&entry, wo, wi);
-        let pdf = (0..4).map(|p| odds[p] * density[p]).sum::<f64>();
-        let value = (0..4).map(|p| share[p] * (density[p] as f32)).fold(Lanes::ZERO, |sum, lobe| sum + lobe);
-        let pdf = pdf as f32;
+        let lobes = Lobes { density: self.densities(&entry, wo, wi), share };
+        let (value, pdf) = (lobes.sum(), lobes.pdf(&odds));
         if !(pdf > 0.0 && pdf.is_finite()) {
             return None;
         }
