@@ -2,9 +2,11 @@
 //!
 //! Tests in a module called `slow` are left to `cargo xtask full`.
 
+use std::process::Command;
+
 use anyhow::{Context, Result, ensure};
 
-use crate::shell::{Stages, answers, cargo, root, tee};
+use crate::shell::{Stages, answers, cargo, root, target, tee};
 use crate::{docs, tidy};
 
 /// All stages, in turn; stops at the first that fails.
@@ -16,7 +18,7 @@ pub(crate) fn run() -> Result<()> {
     stages.stage("docs", docs::check)?;
     let tests = stages.stage("tests", || run_tests(Which::Quick))?;
     let doc_tests = stages.stage("doc-tests", || Ok(Counts::read(&tee(&mut cargo("test --doc --workspace"))?)))?;
-    stages.stage("smoke test", || smoke_test("--profile test"))?;
+    stages.stage("smoke test", || smoke_test(tested_program()?))?;
     stages.close();
     eprintln!("   tests: {tests}\n   doc-tests: {doc_tests}");
     Ok(())
@@ -24,7 +26,7 @@ pub(crate) fn run() -> Result<()> {
 
 /// What `ci` leaves out because it takes minutes: slow tests, and the first command of the README as it is written.
 pub(crate) fn run_slow_tests() -> Result<()> {
-    smoke_test("--release")?;
+    smoke_test(cargo("run --release --"))?;
     let counts = run_tests(Which::Slow)?;
     eprintln!("slow tests: {counts}");
     Ok(())
@@ -49,17 +51,22 @@ fn run_tests(which: Which) -> Result<Counts> {
     Ok(Counts::read(&text))
 }
 
-/// The first command of the README, at the cheapest setting. With the profile of the tests there is nothing left to compile.
-fn smoke_test(profile: &str) -> Result<()> {
+/// The first command of the README, at the cheapest setting.
+fn smoke_test(mut tyndall: Command) -> Result<()> {
     let image = root().join("target/ci/milk.exr");
     std::fs::create_dir_all(image.parent().context("a file in a directory")?)?;
     if image.exists() {
         std::fs::remove_file(&image)?;
     }
-    let command = format!("run {profile} -- render scenes/milk/scene.pbrt --spp 1 -o");
-    tee(cargo(&command).arg(&image))?;
+    tee(tyndall.args(["render", "scenes/milk/scene.pbrt", "--spp", "1", "-o"]).arg(&image).current_dir(root()))?;
     ensure!(std::fs::metadata(&image).is_ok_and(|file| file.len() > 0), "no image at {}", image.display());
     Ok(())
+}
+
+/// The program that the tests were run with: there is nothing left to compile.
+fn tested_program() -> Result<Command> {
+    tee(&mut cargo("build --workspace --profile test --bin tyndall"))?;
+    Ok(Command::new(target().join("debug/tyndall")))
 }
 
 /// How many tests ran, summed over all closing lines of a test runner.

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use super::image::Image;
 use super::runs::{Runs, Turn};
-use crate::shell::{cargo, output, root, tee};
+use crate::shell::{cargo, output, root, target, tee};
 
 /// The binary `tyndall`.
 #[derive(Debug)]
@@ -25,8 +25,7 @@ impl Tyndall {
             return Ok(Self { binary });
         }
         tee(&mut cargo("build --release --package tyndall-cli"))?;
-        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-        Ok(Self { binary: target.join("release/tyndall") })
+        Ok(Self { binary: target().join("release/tyndall") })
     }
 
     /// A call of `tyndall render` that says nothing.
