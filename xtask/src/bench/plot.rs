@@ -65,7 +65,7 @@ impl Plot<'_> {
             .caption(panel.title, ("sans-serif", 18))
             .margin(12)
             .x_label_area_size(44)
-            .y_label_area_size(64)
+            .y_label_area_size(84)
             .build_cartesian_2d(right.log_scale(), (up.start..4.0 * up.end).log_scale())?; // room for the legend
         chart
             .configure_mesh()
