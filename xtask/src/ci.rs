@@ -25,7 +25,7 @@ pub(crate) fn run() -> Result<()> {
 }
 
 /// What `ci` leaves out because it takes minutes: slow tests, and the first command of the README as it is written.
-pub(crate) fn run_slow_tests() -> Result<()> {
+pub(crate) fn run_slow() -> Result<()> {
     smoke_test(cargo("run --release --"))?;
     let counts = run_tests(Which::Slow)?;
     eprintln!("slow tests: {counts}");

@@ -69,7 +69,7 @@ fn run(chore: Chore) -> anyhow::Result<()> {
         Chore::Bench(options) => bench::run(&options),
         Chore::Full => {
             ci::run()?;
-            ci::run_slow_tests()?;
+            ci::run_slow()?;
             peers::run(&peers::Options::default())?;
             words::run(&words::Options::default())?;
             bench::run(&bench::Options::default())

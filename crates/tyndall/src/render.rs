@@ -106,7 +106,14 @@ struct Tile {
     pixels: Vec<Pixel>,
     /// Layer by layer of a pixel, pixel by pixel.
     cells: Vec<Cell>,
-    tally: Tally,
+}
+
+impl Tile {
+    /// The samples that its pixels still want: which of its pixels, where it is, and the indices.
+    fn missing(&self, wanted: impl Fn((u32, u32)) -> u32) -> impl Iterator<Item = (usize, (u32, u32), Range<u32>)> {
+        let pixels = self.area.pixels().zip(&self.pixels).enumerate();
+        pixels.map(move |(i, (at, pixel))| (i, at, pixel.count as u32..wanted(at)))
+    }
 }
 
 /// Renders a scene on the current rayon thread pool. Layers that the integrator cannot tell are not on the film.
@@ -124,28 +131,29 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
     let samples = AtomicU64::new(0);
     let stopped = AtomicBool::new(false);
 
-    let mut level = 0;
+    let (mut level, mut tally) = (0, Tally::default());
     while level < plan.end && !stopped.load(Relaxed) {
         level = plan.next_level(level);
         let total = plan.total;
         let wanted = |pixel| plan.samples(film.crop.index(pixel), level);
         let batch = tiles_in_a_batch(&tiles, wanted);
-        tiles.par_chunks_mut(batch).with_max_len(1).for_each(|tiles| {
+        let tallies = tiles.par_chunks_mut(batch).with_max_len(1).map(|tiles| {
             if observer.cancelled() {
                 stopped.store(true, Relaxed);
-                return;
+                return Tally::default();
             }
-            let taken = work.render_batch(&layers, wanted, tiles);
-            let samples = samples.fetch_add(taken, Relaxed) + taken;
+            let tally = work.render_batch(&layers, wanted, tiles);
+            let samples = samples.fetch_add(tally.paths, Relaxed) + tally.paths;
             observer.batch_done(Progress { samples, total });
+            tally
         });
+        tally = tallies.collect::<Vec<_>>().iter().fold(tally, Tally::merged);
         copy_tiles(&tiles, &mut film);
         observer.pass_done(&film, Progress { samples: samples.load(Relaxed), total });
         if level == FIRST_LOOK && settings.allocation == Allocation::ByError {
             plan = Plan::by_error(&film, settings.spp);
         }
     }
-    let tally = tiles.iter().fold(Tally::default(), |sum, tile| sum.merged(&tile.tally));
     Rendering { film, tally, stopped: stopped.load(Relaxed) }
 }
 
@@ -159,7 +167,7 @@ fn tiles_of(crop: Crop, layers: usize) -> Vec<Tile> {
             let pixels = vec![Pixel::default(); (area.width() * area.height()) as usize];
             if !pixels.is_empty() {
                 let cells = vec![Cell::default(); pixels.len() * layers];
-                tiles.push(Tile { area, pixels, cells, tally: Tally::default() });
+                tiles.push(Tile { area, pixels, cells });
             }
         }
     }
@@ -173,14 +181,6 @@ fn tiles_in_a_batch(tiles: &[Tile], wanted: impl Fn((u32, u32)) -> u32) -> usize
     let (count, batches) = (tiles.len(), BATCHES * rayon::current_num_threads());
     let by_size = (BATCH * count as u64).checked_div(samples).map_or(count, |tiles| tiles as usize);
     by_size.min(count / batches).max(1)
-}
-
-impl Tile {
-    /// The samples that its pixels still want: which of its pixels, where it is, and the indices.
-    fn missing(&self, wanted: impl Fn((u32, u32)) -> u32) -> impl Iterator<Item = (usize, (u32, u32), Range<u32>)> {
-        let pixels = self.area.pixels().zip(&self.pixels).enumerate();
-        pixels.map(move |(i, (at, pixel))| (i, at, pixel.count as u32..wanted(at)))
-    }
 }
 
 fn copy_tiles(tiles: &[Tile], film: &mut Film) {
@@ -215,8 +215,8 @@ impl Work<'_> {
         self.apart.is_some() || !matches!(layer.recorded, Recorded::Paths(_))
     }
 
-    /// Takes samples until each pixel has as many as `wanted` says; returns how many that were.
-    fn render_batch(&self, layers: &[LayerKind], wanted: impl Fn((u32, u32)) -> u32, tiles: &mut [Tile]) -> u64 {
+    /// Takes samples until each pixel has as many as `wanted` says.
+    fn render_batch(&self, layers: &[LayerKind], wanted: impl Fn((u32, u32)) -> u32, tiles: &mut [Tile]) -> Tally {
         let first = self.settings.first_sample;
         let mut seen = Vec::new();
         for (tile, of) in tiles.iter().enumerate() {
@@ -254,9 +254,7 @@ impl Work<'_> {
                 pixel.add([0.0; 3]);
             }
         }
-        let first = &mut tiles[0].tally;
-        *first = std::mem::take(first).merged(&tally);
-        seen.len() as u64
+        tally
     }
 }
 

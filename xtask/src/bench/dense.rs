@@ -3,7 +3,7 @@
 
 use anyhow::{Context, Result};
 
-use super::{judge, lab, scenes};
+use super::{lab, scenes};
 use crate::peers::runs::{Runs, Side, Turn};
 use crate::peers::statistics::median;
 use crate::peers::tyndall::Tyndall;
@@ -19,8 +19,6 @@ const SCENES: [(&str, f64); 6] = [
     ("d_fog_box", 3.0),
     ("d2_fog_lamp", 5.0),
 ];
-/// What a collision may cost in the whole program [ns].
-const COLLISION: f64 = 8.0;
 
 /// Measures and prints.
 pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
@@ -34,9 +32,7 @@ pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
         loops.push(lab::bare_times(&bare)?[1]);
         collisions.push(collision(tyndall)?);
     }
-    let (bare, ours) = (median(&loops), median(&collisions));
-    println!("bare loop: {bare:.2} ns a collision in 16 lanes; whole milk, all told: {:.1} times that", ours / bare);
-    judge("a collision in whole milk, all told, one core", ours, "ns", ours <= COLLISION, "8 ns");
+    lab::judge_collision("in whole milk", median(&collisions), median(&loops));
     Ok(())
 }
 

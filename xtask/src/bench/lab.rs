@@ -5,6 +5,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result};
 
+use super::judge;
 use crate::peers::statistics::median;
 use crate::peers::tyndall::{Tyndall, children_cpu_seconds};
 use crate::shell::{output, root};
@@ -69,6 +70,16 @@ fn follow(tyndall: &Tyndall, case: &Case) -> Result<Run> {
     let figure = figures.iter().find(|figure| figure["name"] == "collisions").context("no collisions in the report")?;
     let collisions = figure["mean"].as_f64().context("the collisions are no number")?;
     Ok(Run { photons_a_second: case.photons as f64 / seconds, collisions })
+}
+
+/// What a collision costs in the whole program on one core, all told, beside the bare loop in 16 lanes [ns].
+pub(super) fn judge_collision(place: &str, ours: f64, bare: f64) {
+    const MOST: f64 = 8.0;
+    const MOST_LOOPS: f64 = 3.0;
+    let loops = ours / bare;
+    judge(&format!("a collision {place}, all told, one core"), ours, "ns", ours <= MOST, &format!("{MOST} ns"));
+    let target = format!("{MOST_LOOPS}×");
+    judge(&format!("over the bare loop of {bare:.2} ns in 16 lanes"), loops, "×", loops <= MOST_LOOPS, &target);
 }
 
 /// Compiled as DESIGN says: for this processor.

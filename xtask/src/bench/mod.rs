@@ -14,7 +14,9 @@ mod threads;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
+use serde::Serialize;
 
+use self::plot::Plot;
 use crate::peers::tyndall::Tyndall;
 use crate::shell::root;
 
@@ -88,6 +90,17 @@ fn run_one(bench: Bench, quick: bool) -> Result<()> {
         Bench::Lab => lab::run(&Tyndall::find()?, if quick { 1 } else { 5 }),
         Bench::Roulette => roulette::run(&Tyndall::find()?, if quick { 4.0 } else { 60.0 }),
     }
+}
+
+/// Prints a table, and writes it, the data and a plot of them to `target/bench/NAME.*`.
+fn publish(name: &str, table: &str, data: &impl Serialize, plot: &Plot) -> Result<()> {
+    println!("{table}");
+    let stem = root().join("target/bench").join(name);
+    std::fs::write(stem.with_extension("md"), table)?;
+    std::fs::write(stem.with_extension("json"), serde_json::to_string_pretty(data)?)?;
+    plot.write(&stem.with_extension("svg"))?;
+    println!("{}", stem.with_extension("svg").display());
+    Ok(())
 }
 
 /// A figure beside its target.

@@ -13,6 +13,7 @@ use anyhow::Result;
 use serde::Serialize;
 
 use super::plot::{Curve, Panel as Axes, Plot};
+use super::publish;
 use crate::peers::image::Image;
 use crate::peers::mitsuba::Mitsuba;
 use crate::peers::report::figure;
@@ -20,7 +21,6 @@ use crate::peers::runs::{Runs, Turn};
 use crate::peers::settings::{Duel, Variant};
 use crate::peers::tyndall::Tyndall;
 use crate::peers::{directory, scene_file};
-use crate::shell::root;
 
 /// Independent runs for each N.
 const RUNS: u32 = 8;
@@ -88,14 +88,7 @@ pub(super) fn run(tyndall: &Tyndall, seconds: f64) -> Result<()> {
         let courses = SIDES.map(|side| course(cube, side, seconds, &mitsuba, tyndall));
         panels.push(Panel { cube, courses: courses.into_iter().collect::<Result<_>>()? });
     }
-    let table = panels.iter().map(table).collect::<String>();
-    println!("{table}");
-    let stem = root().join("target/bench/roulette");
-    std::fs::write(stem.with_extension("md"), table)?;
-    std::fs::write(stem.with_extension("json"), serde_json::to_string_pretty(&panels)?)?;
-    plot(&panels).write(&stem.with_extension("svg"))?;
-    println!("{}", stem.with_extension("svg").display());
-    Ok(())
+    publish("roulette", &panels.iter().map(table).collect::<String>(), &panels, &plot(&panels))
 }
 
 /// Doubles N as long as the next runs fit into the time.

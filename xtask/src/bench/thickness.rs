@@ -9,23 +9,19 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 
 use super::plot::{Curve, Panel, Plot};
-use super::{judge, lab};
+use super::{lab, publish, scenes};
 use crate::peers::mitsuba::Mitsuba;
 use crate::peers::report::figure;
-use crate::peers::runs::{Runs, Side, Turn};
+use crate::peers::runs::Side;
 use crate::peers::settings::{Duel, Variant};
 use crate::peers::statistics::median;
 use crate::peers::tyndall::{Tyndall, report};
-use crate::peers::{THICKNESS, directory, scene_file};
-use crate::shell::root;
+use crate::peers::{THICKNESS, directory};
 
 const ALBEDOS: [&str; 2] = ["0.999", "1"];
 
 /// Mean free paths across, and samples a pixel in a run of Mitsuba and of tyndall.
 const CUBES: [(u32, u32, u32); 5] = [(1, 32, 64), (10, 32, 64), (100, 16, 64), (1000, 4, 32), (10_000, 1, 16)];
-
-/// What a collision may cost in the interior, in the whole program [ns], and how many times the bare loop.
-const COLLISION: (f64, f64) = (8.0, 3.0);
 
 /// What was measured in one cube.
 #[derive(Debug, Serialize)]
@@ -52,21 +48,12 @@ pub(super) fn run(tyndall: &Tyndall, turns: u32) -> Result<()> {
             rows.push(row);
         }
     }
-    let table = table(&rows);
-    println!("{table}");
-    let stem = root().join("target/bench/thickness");
-    std::fs::write(stem.with_extension("md"), table)?;
-    std::fs::write(stem.with_extension("json"), serde_json::to_string_pretty(&rows)?)?;
-    plot(&rows).write(&stem.with_extension("svg"))?;
-    println!("{}", stem.with_extension("svg").display());
+    publish("thickness", &table(&rows), &rows, &plot(&rows))?;
 
     let bare = lab::compile_bare_walk()?;
     let loops = (0..turns).map(|_| Ok(lab::bare_times(&bare)?[1])).collect::<Result<Vec<_>>>()?;
-    let (bare, deepest) = (median(&loops), rows.last().context("there are cubes")?.collision);
-    let times = deepest / bare;
-    let (most, most_times) = COLLISION;
-    judge("a collision in the interior, all told", deepest, "ns", deepest <= most, &format!("{most} ns"));
-    judge("over the bare loop in 16 lanes", times, "×", times <= most_times, &format!("{most_times}×"));
+    let deepest = rows.last().context("there are cubes")?.collision;
+    lab::judge_collision("in the interior", deepest, median(&loops));
     Ok(())
 }
 
@@ -77,26 +64,15 @@ fn measure(
     mitsuba: &Mitsuba,
     tyndall: &Tyndall,
 ) -> Result<Row> {
-    let directory = directory(&format!("{THICKNESS}/{thickness} {albedo}"))?;
-    let label = directory.join("tyndall");
+    let label = directory(&format!("{THICKNESS}/{thickness} {albedo}"))?.join("tyndall");
     let values = [format!("thickness={thickness}"), format!("albedo={albedo}")];
     let parameters = format!("integrator=volpath rr_depth=1000000 {}", values.join(" "));
-    let rivals = [Variant::Scalar, Variant::Llvm].map(|variant| Duel {
-        scene: THICKNESS,
-        variant,
-        parameters: parameters.clone(),
-        mitsuba_spp,
-        tyndall_spp,
-        arguments: &[],
-    });
-    let (mut ours, mut costs, mut collisions) = (Vec::new(), Vec::new(), 0.0);
-    let mut theirs: [Vec<Runs>; 2] = [Vec::new(), Vec::new()];
-    for turn in Turn::all(turns, 2) {
-        for (rival, runs) in rivals.iter().zip(&mut theirs) {
-            runs.push(mitsuba.render(rival, turn, &directory, false)?);
-        }
-        let extra = ["--threads", "1", "-D", &values[0], "-D", &values[1]];
-        ours.push(tyndall.render(&scene_file(THICKNESS), tyndall_spp, turn, &label, &extra)?);
+    let duel =
+        Duel { scene: THICKNESS, variant: Variant::Scalar, parameters, mitsuba_spp, tyndall_spp, arguments: &[] };
+    let arguments = ["--threads", "1", "-D", &values[0], "-D", &values[1]];
+    let (ours, theirs) = scenes::in_turns(&duel, &arguments, turns, &label, mitsuba, tyndall)?;
+    let (mut costs, mut collisions) = (Vec::new(), 0.0);
+    for turn in scenes::turns(turns) {
         let report = report(&label, turn)?;
         costs.push(report["ns_per_collision"].as_f64().context("no cost of a collision in the report")?);
         let number = |name: &str| report[name].as_f64().with_context(|| format!("no {name} in the report"));

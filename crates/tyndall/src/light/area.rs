@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// A rectangle is near up to so many of its half diagonals. From farther away points that are uniform in area vary hardly more, and are
-/// found in a fifth of the time.
+/// found sooner.
 const NEAR: f32 = 1.5;
 
 /// An emitting piece of surface.
