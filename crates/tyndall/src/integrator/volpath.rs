@@ -35,7 +35,7 @@ impl Default for VolPath {
         Self {
             max_depth: None,
             counted: Counted::Scatterings,
-            roulette: 0.25,
+            roulette: 0.5,
             deep: Deep::default(),
             explicit_grains: None,
         }
