@@ -6,13 +6,17 @@ use super::{
 };
 use crate::math::Ray;
 
+/// Surfaces that most ways have at most.
+const FEW: usize = 8;
 /// Most surfaces that are noted on a way.
-const MOST: usize = 8;
+const MOST: usize = 1024;
 
 /// The hits of a ray on open surfaces.
 #[derive(Debug, Clone)]
 pub struct Passed {
-    hits: [Nearest; MOST],
+    few: [Nearest; FEW],
+    /// All of them where there are more.
+    many: Vec<Nearest>,
     /// How many there were, noted or not.
     len: usize,
 }
@@ -20,7 +24,7 @@ pub struct Passed {
 impl Default for Passed {
     #[inline]
     fn default() -> Self {
-        Self { hits: [Nearest::before(0.0); MOST], len: 0 }
+        Self { few: [Nearest::before(0.0); FEW], many: Vec::new(), len: 0 }
     }
 }
 
@@ -28,7 +32,11 @@ impl Passed {
     /// In the order of their distances; `None` if there were too many. Where faces meet, an edge can be hit on both.
     #[inline]
     pub fn in_order(&mut self) -> Option<impl Iterator<Item = Hit>> {
-        let hits = self.hits.get_mut(..self.len)?;
+        let hits = match self.len {
+            0..=FEW => &mut self.few[..self.len],
+            ..=MOST => &mut self.many,
+            _ => return None,
+        };
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
         Some(hits.iter().map(Nearest::hit))
     }
@@ -52,14 +60,25 @@ impl Passed {
     #[inline(always)]
     fn note(&mut self, hit: Nearest) {
         // A packet that is not full repeats its last triangle.
-        let last = self.len.checked_sub(1).and_then(|last| self.hits.get(last));
+        let last = self.many.last().or_else(|| self.few.get(self.len.checked_sub(1)?));
         if last.is_some_and(|last| last.is_again(&hit)) {
             return;
         }
-        if let Some(place) = self.hits.get_mut(self.len) {
-            *place = hit;
+        match self.few.get_mut(self.len) {
+            Some(place) => *place = hit,
+            None => self.note_many(hit),
         }
         self.len += 1;
+    }
+
+    #[cold]
+    fn note_many(&mut self, hit: Nearest) {
+        if self.many.is_empty() {
+            self.many.extend_from_slice(&self.few);
+        }
+        if self.many.len() < MOST {
+            self.many.push(hit);
+        }
     }
 }
 

@@ -81,7 +81,7 @@ fn more_open_surfaces_than_can_be_noted_are_told_of() {
         let positions = vec![Vec3::new(-9.0, -9.0, z), Vec3::new(9.0, -9.0, z), Vec3::new(0.0, 9.0, z)];
         Mesh { positions, indices: vec![[0, 1, 2]], ..Mesh::default() }
     };
-    for (sheets, fit) in [(8, true), (9, false)] {
+    for (sheets, fit) in [(8, true), (9, true), (1024, true), (1025, false)] {
         let meshes: Vec<_> = (0..sheets).map(|i| sheet(i as f32)).collect();
         let mut builder = GeometryBuilder::new();
         for mesh in meshes {
@@ -89,7 +89,7 @@ fn more_open_surfaces_than_can_be_noted_are_told_of() {
         }
         let geometry = builder.build().unwrap();
         let mut passed = Passed::default();
-        assert!(!geometry.occluded_but(&Ray::new(-Vec3::Z, Vec3::Z), 1e3, &vec![true; sheets], &mut passed));
+        assert!(!geometry.occluded_but(&Ray::new(-Vec3::Z, Vec3::Z), 1e4, &vec![true; sheets], &mut passed));
         assert_eq!(passed.in_order().map(Iterator::count), fit.then_some(sheets));
     }
 }
