@@ -26,6 +26,9 @@ use tyndall::{
 
 use crate::run::{BATCH, Sums, Verdict, photons_of, run_together};
 
+/// As [`VolPath::roulette`], and less: most of what a camera's path finds it finds early, a photon brings all at its end.
+const ROULETTE: f32 = 0.25;
+
 /// A photon on its way.
 #[derive(Debug)]
 pub struct Photon {
@@ -124,7 +127,7 @@ pub(crate) fn shoot<D: Detector>(
     let batches = |numbers: Range<u64>| {
         let mut crew = Experimenters {
             scene,
-            settings: VolPath::default(),
+            settings: VolPath { roulette: ROULETTE, ..VolPath::default() },
             desks: numbers.clone().map(|_| (detector(), Tally { paths: BATCH, ..Tally::default() })).collect(),
         };
         let photons = numbers.enumerate().flat_map(|(desk, batch)| photons_of(batch).map(move |photon| (desk, photon)));

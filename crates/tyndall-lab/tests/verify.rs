@@ -74,6 +74,8 @@ fn a_defect_of_a_tenth_is_caught_by_a_quick_look() {
         ("grains", Fault::Fresnel),
         ("image-enclosure", Fault::Reflectance),
         ("image-radiance", Fault::Scattering),
+        ("image-fibre", Fault::Absorption),
+        ("image-fibre", Fault::Index),
     ];
     for (name, fault) in pairs {
         let oracle = ORACLES.iter().find(|oracle| oracle.name == name).unwrap();
@@ -145,5 +147,6 @@ mod slow {
         by_enclosures: "image-enclosure",
         by_floors: "image-floor",
         by_panes: "image-pane",
+        by_fibres: "image-fibre",
     }
 }

@@ -8,7 +8,7 @@ use crate::world::{SetupError, Substance};
 pub(super) const BALLS: &str = include_str!("../../data/sphere_escape_absorption.csv");
 
 pub(super) fn balance(family: &'static str, effort: Effort) -> Result<Vec<Experiment>, SetupError> {
-    let table = rows(BALLS);
+    let (table, effort) = (rows(BALLS), effort.finer(2.0));
     let experiment = |(number, row): (usize, &Row)| {
         let [radius, albedo] = [row.number("R"), row.number("c")];
         let substance = Substance::of_albedo(albedo, 0.0);

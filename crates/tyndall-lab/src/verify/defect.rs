@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use tyndall::{
-    material::{Index, Material},
+    material::{HairColour, Index, Material},
     phase::Phase,
     scene::Scene,
     spectrum::{Spectrum, Wavelengths},
@@ -70,12 +70,23 @@ impl Defect {
             match (self.fault, material) {
                 (Fault::Index, Material::Dielectric { eta: Index::Constant(eta), .. }) => *eta *= more,
                 (Fault::Fresnel, Material::Dielectric { reflection_tint, .. }) => *reflection_tint = less.into(),
-                (Fault::Reflectance, Material::Diffuse { reflectance: Texture::Constant(spectrum), .. }) => {
-                    *spectrum = spectrum.clone().scaled(less);
+                (Fault::Index, Material::Hair(hair)) => scale(&mut hair.eta, more),
+                (Fault::Absorption, Material::Hair(hair)) => {
+                    if let HairColour::SigmaA(sigma_a) = &mut hair.colour {
+                        scale(sigma_a, more);
+                    }
                 }
+                (Fault::Reflectance, Material::Diffuse { reflectance, .. }) => scale(reflectance, less),
                 _ => {}
             }
         }
         scene
+    }
+}
+
+/// Textures of experiments are constant.
+fn scale(texture: &mut Texture, by: f32) {
+    if let Texture::Constant(spectrum) = texture {
+        *spectrum = spectrum.clone().scaled(by);
     }
 }

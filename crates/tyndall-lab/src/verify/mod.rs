@@ -246,6 +246,13 @@ pub const ORACLES: &[Oracle] = &[
         measure: images::surfaces::panes,
     },
     Oracle {
+        name: "image-fibre",
+        about: "albedo of a fibre of hair by inclination and absorption",
+        source: "ray optics, quadrature (Marschner 2003, Chiang 2016)",
+        sees: &[Absorption, Index],
+        measure: images::fibres::albedos,
+    },
+    Oracle {
         name: "image-agreement",
         about: "rooms without a closed form, by all integrators",
         source: "volpath, with many samples",

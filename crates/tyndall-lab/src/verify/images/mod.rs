@@ -1,6 +1,7 @@
 //! Figures of the image renderer: a small world, a camera whose pixels all look along the same ray, every integrator that
 //! can render it.
 
+pub(super) mod fibres;
 pub(super) mod media;
 mod stage;
 pub(super) mod surfaces;

@@ -9,12 +9,12 @@ use tyndall::{
         AreaLight, ConstantEnvironment, Distant, EmitterShape, EnvironmentMap, Light, LightId, LightTable, PointLight,
         Projection,
     },
-    material::{Index, Material, Roughness},
+    material::{HairColour, HairTextures, Index, Material, Roughness},
     math::{Transform, Vec3},
     medium::{Homogeneous, MediumId, MediumInterface},
     phase::{Isotropic, Phase},
     scene::{Emission, MaterialId, Object, Scene},
-    shape::{Disk, GeometryBuilder, Mesh, Sphere},
+    shape::{Basis, Curves, Disk, GeometryBuilder, Knot, Mesh, Sphere, Style},
     spectrum::{ColorMode, Spectrum},
 };
 
@@ -82,6 +82,27 @@ impl Stage {
     pub(super) fn from_above(half: f32) -> Self {
         let model = CameraModel::Orthographic(Orthographic { window: [-half, half, -half, half] });
         Self::by(model, looking(Vec3::Z * (4.0 * half), Vec3::ZERO))
+    }
+
+    /// With a fibre of radius 1 and of the table's index, that absorbs so much [1/radius], seen at an angle to its normal plane
+    /// [rad] over all of its width.
+    pub(super) fn along_a_fibre(angle: f64, sigma_a: f64) -> Made<Self> {
+        const SHORT: f32 = 1e-3;
+        let model = CameraModel::Orthographic(Orthographic { window: [-1.0, 1.0, -SHORT, SHORT] });
+        let eye = DVec3::new(0.0, angle.sin(), angle.cos()).as_vec3() * 4.0;
+        let mut stage = Self::by(model, looking(eye, Vec3::ZERO));
+        let mut fibre = Curves::new(Style::Round);
+        fibre.push(Basis::Linear, &[-1.0, 1.0].map(|end| Knot { p: Vec3::Y * (end * 50.0), radius: 1.0 }));
+        stage.builder.add_curves(fibre, &Transform::IDENTITY)?;
+        let hair = HairTextures {
+            colour: HairColour::SigmaA((sigma_a as f32).into()),
+            eta: 1.55.into(),
+            beta_m: 0.3.into(),
+            beta_n: 0.3.into(),
+            alpha: 2.0.into(),
+        };
+        stage.object(Material::Hair(Box::new(hair)), None);
+        Ok(stage)
     }
 
     fn by(model: CameraModel, to_world: Transform) -> Self {
