@@ -47,7 +47,7 @@ impl Layers {
 }
 
 /// All of them, in the order of the page.
-pub(super) const ENTRIES: [Entry; 12] = [
+pub(super) const ENTRIES: [Entry; 13] = [
     Entry {
         name: "milk",
         scene: "milk/scene.pbrt",
@@ -141,12 +141,23 @@ pub(super) const ENTRIES: [Entry; 12] = [
     Entry {
         name: "hair",
         scene: "hair/scene.pbrt",
-        spp: 64,
+        spp: 256,
         layers: Layers::Surfaces,
         options: &[],
         title: "Blond hair and dark hair",
         caption: "A fibre of blond hair is nearly clear; its colour is that of many of them, of light that was scattered more than once. \
                   There are no media here: see [Hair](hair.md).",
+    },
+    Entry {
+        name: "hair-head",
+        scene: "hair/head.pbrt",
+        spp: 384,
+        layers: Layers::Surfaces,
+        options: &[],
+        title: "Two heads of hair",
+        caption: "16,000 strands each, combed back. Round a head shine lies in bands, for strands beside each other turn the same way to \
+                  the lamp. The lamp behind shines through the edge of the blond hair; most of what one sees of that was scattered more \
+                  than once.",
     },
     Entry {
         name: "beads",
