@@ -37,7 +37,8 @@ fn point(strand: u32, s: f32) -> Vec3 {
     let narrow = Vec2::new(1.3, 0.7) * (1.0 - 0.75 * s * s);
     let stray = if random(strand, 6) < 0.04 { 2.5 } else { 1.0 };
     let spread = (0.35 - 0.28 * s) * stray;
-    let length = LENGTH * (0.9 + 0.1 * random(tuft, 9)) * (1.0 - 0.35 * random(strand, 7).powi(2));
+    let short = random(strand, 7);
+    let length = LENGTH * (0.9 + 0.1 * random(tuft, 9)) * (1.0 - 0.35 * short * short);
     let across = root * narrow
         + own * spread
         + Vec2::new(wave * angle.sin(), 0.8 * wave * angle.cos())
