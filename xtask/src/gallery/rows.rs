@@ -156,8 +156,8 @@ pub(super) const ENTRIES: [Entry; 13] = [
         options: &[],
         title: "Two heads of hair",
         caption: "16,000 strands each, combed back. Round a head shine lies in bands, for strands beside each other turn the same way to \
-                  the lamp. The lamp behind shines through the edge of the blond hair; most of what one sees of that was scattered more \
-                  than once.",
+                  the lamp. Blond hair is golden by what was scattered more than once: most of its red, and the smaller part of its blue. \
+                  The lamp behind shines through the edge of it.",
     },
     Entry {
         name: "beads",
