@@ -106,6 +106,12 @@ impl Attempt {
     /// As in a medium that no light reaches: what paths run into there counts in full.
     pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, draw: 1.0, ..Self::CERTAIN };
 
+    /// In a medium, with this ball around it.
+    #[inline]
+    fn within(depths: &Depths, ball: Ball) -> Self {
+        Self { ball, share: depths.share(), sigma_min: depths.sigma_min, ..Self::CERTAIN }
+    }
+
     /// Whether it is.
     #[inline]
     pub fn is_made(&self) -> bool {
@@ -185,15 +191,8 @@ impl Path {
         let around = Ball::around(scene, p, most);
         let ball = self.around.behind.touching(scene, p, around, most);
         self.around.ball = ball;
-        Attempt {
-            odds: depths.odds(around.radius),
-            supposed: depths.share,
-            draw: self.sampler.rng.next_positive(),
-            ball,
-            closer: 0.0,
-            share: depths.share,
-            sigma_min: depths.sigma_min,
-        }
+        let (odds, draw) = (depths.odds(around.radius), self.sampler.rng.next_positive());
+        Attempt { odds, supposed: depths.share(), draw, ..Attempt::within(&depths, ball) }
     }
 
     /// A light sample that a walk has announced, and what the path weighs there. The ball of the walk may be loose: what
@@ -208,15 +207,9 @@ impl Path {
         let depths = self.around.depths?;
         let supposed = announced.odds;
         let draw = rng.next_positive() * supposed;
-        let attempt = Attempt {
-            odds: supposed,
-            supposed,
-            draw,
-            ball: self.around.ball,
-            closer: depths.farthest(scene),
-            share: depths.share,
-            sigma_min: depths.sigma_min,
-        };
+        let closer = depths.farthest(scene);
+        let attempt =
+            Attempt { odds: supposed, supposed, draw, closer, ..Attempt::within(&depths, self.around.ball) };
         let settled = depths.settle(announced.collisions, announced.length);
         let mut weights = self.weights;
         weights.walk(settled.beta, settled.density);
@@ -242,7 +235,7 @@ impl Path {
             ball,
             mean_free_path: 1.0 / depths.sigma_t,
             sigma_min: depths.sigma_min,
-            share: depths.share,
+            share: depths.share(),
             lit: depths.lit != Lit::Never,
             collisions: 0,
             limit: depths.limit.min(allowed),

@@ -113,8 +113,6 @@ pub struct Depths {
     pub sigma_min: f32,
     /// How light can be reached.
     pub lit: Lit,
-    /// The probability of a light sample at the surface \[1\].
-    pub share: f32,
     /// Collisions between two games of roulette.
     pub limit: u32,
     /// `ln(σ_t / σ_t,hero)` in each lane.
@@ -148,7 +146,6 @@ impl Depths {
         if !scatters || !source.is_zero() || is_shallow || scene.aims(id, coefficients) {
             return None;
         }
-        let lit = scene.lit(Some(id));
         let log = |v: f32| if v > 0.0 { v.ln() } else { LOG_OF_NOTHING };
         let albedo = sigma_s / sigma_t;
         let limit = LEAST_THROUGHPUT.ln() / log(albedo.max_lane()).min(-f32::MIN_POSITIVE);
@@ -157,8 +154,7 @@ impl Depths {
             sigma_t: extinction,
             sigma_mean,
             sigma_min: sigma_t.min_lane(),
-            lit,
-            share: if lit == Lit::Bent { BENT_SHARE } else { 1.0 },
+            lit: scene.lit(Some(id)),
             limit: if limit < MOST_COLLISIONS { (limit as u32).max(1) } else { MOST_COLLISIONS as u32 },
             log_extinction: (sigma_t / extinction).map(log),
             log_albedo: albedo.map(log),
@@ -178,10 +174,20 @@ impl Depths {
         way * self.sigma_mean >= ROOM
     }
 
+    /// The probability of a light sample at the surface \[1\].
+    #[inline]
+    pub fn share(&self) -> f32 {
+        match self.lit {
+            Lit::Never => 0.0,
+            Lit::Straight => 1.0,
+            Lit::Bent => BENT_SHARE,
+        }
+    }
+
     /// The probability of a light sample at a point with this room [length].
     #[inline]
     pub fn odds(&self, room: f32) -> f32 {
-        if self.lit == Lit::Never { 0.0 } else { light_odds(self.share, self.sigma_min * room.max(0.0)) }
+        light_odds(self.share(), self.sigma_min * room.max(0.0))
     }
 
     /// The weights of `collisions` after flights of total `length` [length].
