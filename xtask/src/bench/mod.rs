@@ -7,6 +7,7 @@ mod mesh;
 mod plot;
 mod rays;
 mod roulette;
+mod scale;
 mod scenes;
 mod startup;
 mod thickness;
@@ -53,6 +54,8 @@ pub(crate) enum Bench {
     Mesh,
     /// MSE · N against N: our roulette keeps the variance finite where Mitsuba's does not
     Roulette,
+    /// One picture at four sizes: the same light from tyndall, less from Mitsuba the smaller it is
+    Scale,
 }
 
 /// Measures and prints; whether a target is met is said, but a missed one is no failure: machines differ.
@@ -70,6 +73,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
         Bench::Lab,
         Bench::Mesh,
         Bench::Roulette,
+        Bench::Scale,
     ];
     match options.bench {
         Some(bench) => run_one(bench, options.quick),
@@ -88,6 +92,7 @@ fn run_one(bench: Bench, quick: bool) -> Result<()> {
         Bench::Startup => startup::run(&Tyndall::find()?, if quick { 5 } else { 20 }),
         Bench::Threads => threads::run(&Tyndall::find()?, if quick { 2 } else { 5 }),
         Bench::Lab => lab::run(&Tyndall::find()?, if quick { 1 } else { 5 }),
+        Bench::Scale => scale::run(&Tyndall::find()?, if quick { 1 } else { 4 }),
         Bench::Roulette => roulette::run(&Tyndall::find()?, if quick { 4.0 } else { 60.0 }),
     }
 }

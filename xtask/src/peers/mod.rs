@@ -53,11 +53,13 @@ pub(crate) struct Options {
 
 /// The cube that is so many mean free paths across.
 pub(crate) const THICKNESS: &str = "thickness";
+/// The cube that comes in several sizes.
+pub(crate) const SCALE: &str = "scale";
 
 /// A scene of Mitsuba's in the repository, or one of those that [`bodies`] makes.
 pub(crate) fn scene_file(scene: &str) -> PathBuf {
-    if scene == THICKNESS {
-        return root().join("xtask/scenes/thickness.xml");
+    if [THICKNESS, SCALE].contains(&scene) {
+        return root().join(format!("xtask/scenes/{scene}.xml"));
     }
     if scene.ends_with(bodies::MESHED) || scene == bodies::HAIR {
         return root().join(format!("target/bench/{scene}.xml"));
