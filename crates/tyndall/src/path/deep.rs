@@ -208,8 +208,7 @@ impl Path {
         let supposed = announced.odds;
         let draw = rng.next_positive() * supposed;
         let closer = depths.farthest(scene);
-        let attempt =
-            Attempt { odds: supposed, supposed, draw, closer, ..Attempt::within(&depths, self.around.ball) };
+        let attempt = Attempt { odds: supposed, supposed, draw, closer, ..Attempt::within(&depths, self.around.ball) };
         let settled = depths.settle(announced.collisions, announced.length);
         let mut weights = self.weights;
         weights.walk(settled.beta, settled.density);
