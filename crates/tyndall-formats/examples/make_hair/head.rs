@@ -55,7 +55,7 @@ fn root(of: u32) -> Vec3 {
         Vec3::new(r * phi.cos(), y, r * phi.sin())
     };
     let is_scalp = |d: &Vec3| d.y > -0.15 - 0.35 * d.z + 0.55 * (-d.z).max(0.0);
-    (0..).map(direction).find(is_scalp).expect("half of all directions are")
+    (0..1000).map(direction).find(is_scalp).expect("half of all directions are on the scalp")
 }
 
 /// A strand of some length [cm].

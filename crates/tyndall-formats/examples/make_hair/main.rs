@@ -32,7 +32,7 @@ fn hair_file<const N: usize>(strands: &[[Vec3; N]], width: f32) -> Vec<u8> {
         bytes.extend(f32::to_le_bytes(v));
     }
     bytes.resize(HEADER, 0);
-    bytes.extend(strands.iter().flatten().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+    bytes.extend(strands.iter().flatten().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes));
     bytes
 }
 

@@ -32,11 +32,10 @@ impl Passed {
     /// In the order of their distances; `None` if there were too many. Where faces meet, an edge can be hit on both.
     #[inline]
     pub fn in_order(&mut self) -> Option<impl Iterator<Item = Hit>> {
-        let hits = match self.len {
-            0..=FEW => &mut self.few[..self.len],
-            ..=MOST => &mut self.many,
-            _ => return None,
-        };
+        if self.len > MOST {
+            return None;
+        }
+        let hits = if self.many.is_empty() { &mut self.few[..self.len] } else { &mut self.many[..] };
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
         Some(hits.iter().map(Nearest::hit))
     }
