@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use crate::random;
+use crate::{TUFT, random};
 
 const STRANDS: u32 = 16_000;
 const POINTS: usize = 13;
@@ -17,8 +17,6 @@ const LENGTH: f32 = 40.0;
 const STEPS: usize = 4;
 /// Strands that others keep to.
 const TUFTS: u32 = 320;
-/// Names of tufts, apart from those of strands.
-const TUFT: u32 = 1_000_000;
 
 struct Ellipsoid {
     centre: Vec3,

@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use crate::random;
+use crate::{TUFT, random};
 
 const STRANDS: u32 = 7000;
 const POINTS: usize = 10;
@@ -13,8 +13,6 @@ const LENGTH: f32 = 18.0;
 /// Width of a strand [cm].
 pub(crate) const WIDTH: f32 = 0.009;
 const TUFTS: u32 = 24;
-/// Names of tufts, apart from those of strands.
-const TUFT: u32 = 1_000_000;
 
 /// From root to tip.
 pub(crate) fn strands() -> Vec<[Vec3; POINTS]> {

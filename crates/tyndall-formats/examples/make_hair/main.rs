@@ -11,6 +11,9 @@ use std::{error::Error, fs, path::Path};
 
 use glam::Vec3;
 
+/// Names of tufts, for [`random`], begin here; those of strands at 0.
+const TUFT: u32 = 1_000_000;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let directory = std::env::args().nth(1).ok_or("name the directory to write to")?;
     let directory = Path::new(&directory);
