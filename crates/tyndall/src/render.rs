@@ -28,9 +28,13 @@ use allocation::{FIRST_LOOK, Plan};
 /// Edge of a tile [pixels].
 const TILE: u32 = 16;
 
-/// Samples that are taken together, where there are so many. Few paths deep in a medium are much longer than the others: the more
-/// begin together, the more of these walk side by side.
+/// Samples that are taken together, where there are so many.
 const BATCH: u64 = 1 << 12;
+/// Where paths collide as often as this, more samples are taken together. Few paths deep in a medium are much longer than the
+/// others: the more begin together, the more of these walk side by side.
+const DEEP: u64 = 64;
+/// How many batches make one at most.
+const MOST_BATCHES: u64 = 16;
 /// Batches a thread at least, so that none waits long for the others.
 const BATCHES: usize = 4;
 
@@ -136,7 +140,7 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
         level = plan.next_level(level);
         let total = plan.total;
         let wanted = |pixel| plan.samples(film.crop.index(pixel), level);
-        let batch = tiles_in_a_batch(&tiles, wanted);
+        let batch = tiles_in_a_batch(&tiles, samples_in_a_batch(&tally), wanted);
         let tallies = tiles.par_chunks_mut(batch).with_max_len(1).map(|tiles| {
             if observer.cancelled() {
                 stopped.store(true, Relaxed);
@@ -174,12 +178,18 @@ fn tiles_of(crop: Crop, layers: usize) -> Vec<Tile> {
     tiles
 }
 
-/// How many tiles make a batch.
-fn tiles_in_a_batch(tiles: &[Tile], wanted: impl Fn((u32, u32)) -> u32) -> usize {
+/// Samples that are taken together after paths that did this.
+fn samples_in_a_batch(tally: &Tally) -> u64 {
+    let collisions = tally.collisions.checked_div(tally.paths).unwrap_or(0);
+    BATCH * (collisions / DEEP).clamp(1, MOST_BATCHES)
+}
+
+/// How many tiles make a batch of so many samples.
+fn tiles_in_a_batch(tiles: &[Tile], batch: u64, wanted: impl Fn((u32, u32)) -> u32) -> usize {
     let samples: u64 =
         tiles.iter().map(|tile| tile.missing(&wanted).map(|(.., indices)| indices.len() as u64).sum::<u64>()).sum();
     let (count, batches) = (tiles.len(), BATCHES * rayon::current_num_threads());
-    let by_size = (BATCH * count as u64).checked_div(samples).map_or(count, |tiles| tiles as usize);
+    let by_size = (batch * count as u64).checked_div(samples).map_or(count, |tiles| tiles as usize);
     by_size.min(count / batches).max(1)
 }
 

@@ -21,7 +21,7 @@ use crate::peers::{THICKNESS, directory};
 const ALBEDOS: [&str; 2] = ["0.999", "1"];
 
 /// Mean free paths across, and samples a pixel in a run of Mitsuba and of tyndall.
-const CUBES: [(u32, u32, u32); 5] = [(1, 32, 64), (10, 32, 64), (100, 16, 64), (1000, 4, 32), (10_000, 1, 16)];
+const CUBES: [(u32, u32, u32); 5] = [(1, 32, 64), (10, 32, 64), (100, 16, 64), (1000, 4, 64), (10_000, 1, 128)];
 
 /// What was measured in one cube.
 #[derive(Debug, Serialize)]

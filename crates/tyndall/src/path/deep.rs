@@ -13,6 +13,7 @@ use crate::{
     phase::Phase,
     sampling::Rng,
     scene::{Lit, Scene},
+    shape::Interaction,
     spectrum::Lanes,
     tally::Tally,
 };
@@ -35,7 +36,9 @@ pub struct Surroundings {
 /// The surface that a path in a medium came from.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Behind {
-    /// Its normal, on the side of the path.
+    /// Where the path left it [length].
+    from: Option<Vec3>,
+    /// Its normal, on the side of the path, while balls that touch it are worth to try.
     inward: Option<Vec3>,
     /// The radius of the last ball that touched it [length].
     touched: Option<f32>,
@@ -46,6 +49,13 @@ const TRIES: u32 = 3;
 const SMALLER: f32 = 0.4;
 
 impl Behind {
+    /// How far the nearest surface is from `p` at most, for a search to end there: as far as this one [length].
+    #[inline]
+    fn distance(&self, p: Vec3) -> f32 {
+        const ROUNDING: f32 = 1.001;
+        self.from.map_or(f32::INFINITY, |from| (p - from).length() * ROUNDING)
+    }
+
     /// The ball around `p`; or a larger one that holds it and touches the surface behind, if that is even enough and the
     /// nearest. A walk near the surface leaves such a ball far more rarely.
     #[inline]
@@ -78,6 +88,10 @@ enum Left {
     /// A collision, whose light has been seen to.
     Collision,
 }
+
+/// How far beyond the clearance that is known a closer look goes [mean free paths]. It must not depend on the number that was drawn:
+/// clearances are bounds, and an answer may be lower if it has been looked for further.
+const CLOSER_LOOK: f32 = 2.0;
 
 /// Whether light is sampled at a vertex, and how likely that was: a number is drawn once, and what more becomes known of the
 /// way to the light can only lower the odds that it is held against.
@@ -130,7 +144,12 @@ impl Attempt {
     #[inline]
     #[must_use]
     pub fn closer(&self, scene: &Scene, p: Vec3) -> Option<Self> {
-        if self.closer == 0.0 { Some(*self) } else { self.lowered(Ball::around(scene, p, self.closer).radius) }
+        if self.closer == 0.0 {
+            return Some(*self);
+        }
+        let known = (self.share / self.odds).ln() / self.sigma_min;
+        let cap = self.closer.min(known + CLOSER_LOOK / self.sigma_min);
+        self.lowered(Ball::around(scene, p, cap).radius)
     }
 
     #[inline]
@@ -147,10 +166,11 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
-    /// The path leaves a surface with normal `ng` along `dir`.
+    /// The path leaves a surface along `dir`.
     #[inline]
-    pub(crate) fn leave(&mut self, ng: Vec3, dir: Vec3) {
-        self.behind = Behind { inward: Some(if ng.dot(dir) < 0.0 { -ng } else { ng }), ..self.behind };
+    pub(crate) fn leave(&mut self, hit: &Interaction, dir: Vec3) {
+        let inward = if hit.ng.dot(dir) < 0.0 { -hit.ng } else { hit.ng };
+        self.behind = Behind { from: Some(hit.p), inward: Some(inward), ..self.behind };
     }
 }
 
@@ -188,7 +208,7 @@ impl Path {
             return Attempt { supposed: depths.odds(self.around.ball.room(p)), ..Attempt::NONE };
         }
         let most = depths.farthest(scene);
-        let around = Ball::around(scene, p, most);
+        let around = Ball::around(scene, p, most.min(self.around.behind.distance(p)));
         let ball = self.around.behind.touching(scene, p, around, most);
         self.around.ball = ball;
         let (odds, draw) = (depths.odds(around.radius), self.sampler.rng.next_positive());

@@ -40,7 +40,7 @@ use crate::{
 };
 
 /// Greatest clearance that is asked for [mean free paths].
-const FARTHEST: f32 = 64.0;
+const FARTHEST: f32 = 256.0;
 /// Least room for a walk to begin [mean free paths].
 const ROOM: f32 = 0.5;
 /// Most collisions between two games of roulette.

@@ -113,7 +113,7 @@ impl Walks {
     #[inline(always)]
     fn fill(&mut self, lanes: &mut Lanes, lane: usize) -> bool {
         let Some((path, walker)) = self.waiting.pop() else {
-            lanes.path[lane] = NOBODY;
+            lanes.rest(lane);
             return false;
         };
         lanes.path[lane] = path;
@@ -157,6 +157,14 @@ impl Lanes {
             self.set(lane, &walker);
         }
         codes
+    }
+
+    /// A lane without a walk: it stays where it is and has nothing to say, so that it never stops the others.
+    #[inline(always)]
+    fn rest(&mut self, i: usize) {
+        self.path[i] = NOBODY;
+        (self.radius[i], self.mean_free_path[i], self.share[i]) = (f32::INFINITY, 0.0, 0.0);
+        (self.collisions[i], self.limit[i]) = (0, u32::MAX);
     }
 
     #[inline(always)]
