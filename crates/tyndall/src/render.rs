@@ -30,11 +30,11 @@ const TILE: u32 = 16;
 
 /// Samples that are taken together, where there are so many.
 const BATCH: u64 = 1 << 12;
-/// Where paths collide as often as this, more samples are taken together. Few paths deep in a medium are much longer than the
-/// others: the more begin together, the more of these walk side by side.
+/// Samples that are taken together where paths are longest. Few paths deep in a medium are much longer than the others: the more
+/// begin together, the more of these walk side by side.
+const LARGEST_BATCH: u64 = 1 << 16;
+/// Collisions a path above which batches are larger.
 const DEEP: u64 = 64;
-/// How many batches make one at most.
-const MOST_BATCHES: u64 = 16;
 /// Batches a thread at least, so that none waits long for the others.
 const BATCHES: usize = 4;
 
@@ -140,7 +140,7 @@ pub fn render(scene: &Scene, integrator: &dyn Integrator, settings: &Settings, o
         level = plan.next_level(level);
         let total = plan.total;
         let wanted = |pixel| plan.samples(film.crop.index(pixel), level);
-        let batch = tiles_in_a_batch(&tiles, samples_in_a_batch(&tally), wanted);
+        let batch = tiles_in_a_batch(&tiles, samples_in_a_batch(&tally, layers.len()), wanted);
         let tallies = tiles.par_chunks_mut(batch).with_max_len(1).map(|tiles| {
             if observer.cancelled() {
                 stopped.store(true, Relaxed);
@@ -178,10 +178,11 @@ fn tiles_of(crop: Crop, layers: usize) -> Vec<Tile> {
     tiles
 }
 
-/// Samples that are taken together after paths that did this.
-fn samples_in_a_batch(tally: &Tally) -> u64 {
+/// Samples that are taken together after paths that did this; fewer where each has many layers, which take memory.
+fn samples_in_a_batch(tally: &Tally, layers: usize) -> u64 {
     let collisions = tally.collisions.checked_div(tally.paths).unwrap_or(0);
-    BATCH * (collisions / DEEP).clamp(1, MOST_BATCHES)
+    let most = LARGEST_BATCH / (1 + layers as u64);
+    (BATCH.saturating_mul(collisions) / DEEP).min(most).max(BATCH)
 }
 
 /// How many tiles make a batch of so many samples.
