@@ -111,11 +111,9 @@ impl Photon {
     }
 }
 
-/// Batches whose photons are followed together, so that deep inside a medium no lane waits for the last of them.
-const TOGETHER: u64 = 8;
-
 /// An experiment: launches photons in batches, each along the ray of its number, past a detector that starts anew with
-/// every batch, until there are `photons` or `look` has seen enough.
+/// every batch, until there are `photons` or `look` has seen enough. Many batches are followed together, so that deep inside a
+/// medium no lane waits for the last of them.
 pub(crate) fn shoot<D: Detector>(
     scene: &Scene,
     photons: u64,
@@ -135,7 +133,7 @@ pub(crate) fn shoot<D: Detector>(
         pool::follow(scene, &mut crew, launched, &mut Tally::default());
         crew.desks.into_iter().map(|(detector, tally)| (detector.totals(), tally)).collect()
     };
-    run_together(detector().totals().len(), photons, TOGETHER, batches, look)
+    run_together(detector().totals().len(), photons, batches, look)
 }
 
 /// Those who follow the photons of an experiment.

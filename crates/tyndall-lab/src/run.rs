@@ -13,8 +13,12 @@ use tyndall::tally::Tally;
 
 /// Photons of a batch.
 pub const BATCH: u64 = 250;
-/// Batches between two looks at the clock.
-const ROUND: u64 = 64;
+/// Batches between two looks at the clock, at first and at most: the longer an experiment has run, the less a look matters.
+const ROUND: [u64; 2] = [64, 256];
+/// A round is so small a part of the batches before it.
+const ROUND_OF_ALL: u64 = 4;
+/// Tasks of a round whose batches are done together.
+const TASKS: u64 = 8;
 
 /// A figure with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -98,22 +102,34 @@ pub fn run(
     batch: impl Fn(u64) -> Batch + Sync,
     look: impl FnMut(&Sums) -> Verdict,
 ) -> Sums {
-    run_together(quantities, photons, 1, |numbers| numbers.map(&batch).collect(), look)
+    run_rounds(quantities, photons, |_| 1, |numbers| numbers.map(&batch).collect(), look)
 }
 
-/// Runs batches, `batches(n..m)` being those of numbers n to m (as many as are done `together`, or fewer), until `photons`
-/// have been launched or `look`, which sees the sums after every round, has seen enough.
+/// Runs batches, `batches(n..m)` being those of numbers n to m, which gain by being done together, until `photons` have been
+/// launched or `look`, which sees the sums after every round, has seen enough.
 pub fn run_together(
     quantities: usize,
     photons: u64,
-    together: u64,
+    batches: impl Fn(Range<u64>) -> Vec<Batch> + Sync,
+    look: impl FnMut(&Sums) -> Verdict,
+) -> Sums {
+    run_rounds(quantities, photons, |round| round.div_ceil(TASKS), batches, look)
+}
+
+/// The same; `together` of a round's batches are a task.
+fn run_rounds(
+    quantities: usize,
+    photons: u64,
+    together: impl Fn(u64) -> u64,
     batches: impl Fn(Range<u64>) -> Vec<Batch> + Sync,
     mut look: impl FnMut(&Sums) -> Verdict,
 ) -> Sums {
     let last = photons.div_ceil(BATCH).max(2);
     let mut sums = Sums::new(quantities);
     while sums.batches < last {
-        let (start, end) = (sums.batches, (sums.batches + ROUND).min(last));
+        let round = (sums.batches / ROUND_OF_ALL).clamp(ROUND[0], ROUND[1]);
+        let (start, end) = (sums.batches, (sums.batches + round).min(last));
+        let together = together(end - start);
         let parts = (0..(end - start).div_ceil(together)).into_par_iter();
         let part = |i: u64| start + i * together..(start + (i + 1) * together).min(end);
         let done: Vec<Vec<Batch>> = parts.map(|i| batches(part(i))).collect();
