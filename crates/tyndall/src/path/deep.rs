@@ -52,8 +52,9 @@ impl Behind {
     /// How far the nearest surface is from `p` at most, for a search to end there: as far as this one [length].
     #[inline]
     fn distance(&self, p: Vec3) -> f32 {
-        const ROUNDING: f32 = 1.001;
-        self.from.map_or(f32::INFINITY, |from| (p - from).length() * ROUNDING)
+        // A search that ended just before this surface would give the ball less room than there is.
+        const BEYOND: f32 = 1.001;
+        self.from.map_or(f32::INFINITY, |from| (p - from).length() * BEYOND)
     }
 
     /// The ball around `p`; or a larger one that holds it and touches the surface behind, if that is even enough and the
@@ -147,9 +148,8 @@ impl Attempt {
         if self.closer == 0.0 {
             return Some(*self);
         }
-        let known = (self.share / self.odds).ln() / self.sigma_min;
-        let cap = self.closer.min(known + CLOSER_LOOK / self.sigma_min);
-        self.lowered(Ball::around(scene, p, cap).radius)
+        let cap = ((self.share / self.odds).ln() + CLOSER_LOOK) / self.sigma_min;
+        self.lowered(Ball::around(scene, p, cap.min(self.closer)).radius)
     }
 
     #[inline]

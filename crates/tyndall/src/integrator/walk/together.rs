@@ -243,6 +243,20 @@ mod tests {
         }
     }
 
+    /// If they had, they would stop the others at each of their collisions.
+    #[test]
+    fn lanes_at_rest_have_nothing_to_say() {
+        let mut lanes = Lanes::default();
+        // Half of them have walked before: to the end of their ball and of their collisions.
+        for lane in 0..WIDTH / 2 {
+            lanes.set(lane, &Walker { collisions: 50, limit: 50, ..walker(lane as u32, MediumId(0), true) });
+        }
+        (0..WIDTH).for_each(|lane| lanes.rest(lane));
+        for _ in 0..10_000 {
+            assert_eq!(lanes.collide::<true>(|u| 1.0 - 2.0 * u), [step::GOES_ON; WIDTH]);
+        }
+    }
+
     /// Every instruction set of this machine gives the bits that one walk after the other gives, for every model.
     #[test]
     fn every_instruction_set_walks_alike() {
