@@ -314,6 +314,12 @@ impl Path {
         self.around.left == Left::Collision
     }
 
+    /// Whether a flight of this length ends in the ball that the path knows: nothing can be in its way [length].
+    #[inline]
+    pub(super) fn stays_clear(&self, flight: f32) -> bool {
+        flight < self.around.ball.reach(self.ray.origin, self.ray.dir)
+    }
+
     /// Leaves a flight whose length is drawn [length].
     #[inline]
     pub(super) fn leave_flight(&mut self, flight: f32) {

@@ -68,6 +68,9 @@ impl Path {
             return collision;
         }
         let (flight, lamp) = self.begin_flight(aiming);
+        if self.stays_clear(flight) {
+            return self.arrive(scene, None, flight, None, tally);
+        }
         tally.rays += 1;
         if lamp.is_none() {
             let hit = scene.first_surface(&self.ray, flight);

@@ -22,6 +22,9 @@ impl Path {
             return None;
         }
         let (mut flight, mut lamp) = self.begin_flight(aiming);
+        if self.stays_clear(flight) {
+            return Some(self.arrive(scene, None, flight, None, tally));
+        }
         let way = self.ray;
         let reach = if lamp.is_some() { f32::INFINITY } else { self.reach(scene, flight) };
         tally.rays += 1;
