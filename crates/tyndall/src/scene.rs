@@ -1,6 +1,7 @@
 //! The resolved, immutable world that a render reads: arrays and typed ids, made once.
 
 mod lit;
+mod rooms;
 
 use std::sync::Arc;
 
@@ -15,7 +16,7 @@ use crate::{
     material::Material,
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Distances, Geometry, Hit, Interaction, ObjectId, Shape},
+    shape::{Ball, Distances, Geometry, Hit, Interaction, ObjectId, Room, Shape},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -99,6 +100,8 @@ struct Facts {
     only_wall: Vec<Option<ObjectId>>,
     /// By medium: a box that it does not reach out of.
     extent: Vec<Bounds>,
+    /// By medium: all that it fills, if that is simple.
+    room: Vec<Option<Room>>,
     /// By medium: the greatest clearance in it [length].
     deepest: Vec<f32>,
     /// By medium: whether a small lamp is in it.
@@ -164,9 +167,10 @@ impl Scene {
 
     /// With the facts, where the objects that are `absent` are not in its geometry.
     fn known(mut self, bodies: Vec<Body>, absent: Granular) -> Self {
-        let Self { camera, geometry, objects, materials, lights, .. } = &self;
-        let objects: Vec<_> =
-            (0..).map(ObjectId).zip(objects.iter()).filter(|(_, object)| object.granular != Some(absent)).collect();
+        let all = Arc::clone(&self.objects);
+        let present = |(_, object): &(ObjectId, &Object)| object.granular != Some(absent);
+        let objects: Vec<_> = (0..).map(ObjectId).zip(all.iter()).filter(present).collect();
+        let Self { camera, geometry, materials, lights, .. } = &self;
         let walls = lit::walls(&self, &bodies);
         let is_open = |(_, o): &(ObjectId, &Object)| may_be_open(&materials[o.material.0 as usize], materials);
         let media = || (0..).map(MediumId).take(self.media.len());
@@ -199,6 +203,7 @@ impl Scene {
             (0..).map(LightId).take(self.lights.lights.len()).any(|lamp| self.small_lamp(medium, lamp).is_some())
         };
         self.facts.holds_lamp = (0..).map(MediumId).take(self.media.len()).map(holds_lamp).collect();
+        self.facts.room = rooms::of_media(&self, &objects);
         self.facts.distances = distances(&self);
         self.facts.around_camera = enclosure::around_camera(&self);
         self
@@ -344,6 +349,25 @@ impl Scene {
             Some((centre, nearest)) => (centre, self.clear_of_lights(centre, nearest)),
             None => (p, self.clearance(p, cap)),
         }
+    }
+
+    /// A ball around `p`, as large as its clearance and no larger than `cap` [length].
+    #[inline]
+    pub fn ball(&self, p: Vec3, cap: f32) -> Ball {
+        Ball::within(p, self.clearance(p, cap))
+    }
+
+    /// The same around a point near `p`, where that saves work.
+    #[inline]
+    pub fn ball_near(&self, p: Vec3, cap: f32) -> Ball {
+        let (centre, clearance) = self.clearance_near(p, cap);
+        Ball::within(centre, clearance)
+    }
+
+    /// All that a medium fills, if that is one ball or block in which no other surface and no light is.
+    #[inline]
+    pub fn room(&self, medium: MediumId) -> Option<Room> {
+        self.facts.room[medium.0 as usize]
     }
 
     /// A lower bound on the distance to the nearest light without a surface, at most `cap` [length].

@@ -37,15 +37,17 @@ struct Pool<M> {
     members: Vec<M>,
     /// Numbers of paths that are at their end.
     free: Vec<u32>,
-    /// Walks under way, by medium.
+    /// Walks under way, by medium: those in balls and those in its block.
     walks: Vec<Walks>,
 }
 
 /// Follows all of `members` to their end.
 pub fn follow<C: Crew>(scene: &Scene, crew: &mut C, members: impl IntoIterator<Item = C::Member>, tally: &mut Tally) {
     let walks = (0..scene.media.len()).map(|i| MediumId(i as u32));
-    let lit = |id| std::iter::once(scene).chain(scene.proxied()).any(|world| world.lit(Some(id)) != Lit::Never);
-    let walks = walks.map(|id| Walks::new(id, lit(id))).collect();
+    let worlds = || std::iter::once(scene).chain(scene.proxied());
+    let lit = |id| worlds().any(|world| world.lit(Some(id)) != Lit::Never);
+    let block = |id| worlds().find_map(|world| world.room(id)?.block());
+    let walks = walks.flat_map(|id| [None, block(id)].map(|block| Walks::new(id, lit(id), block))).collect();
     let mut pool = Pool { members: Vec::with_capacity(PATHS), free: Vec::new(), walks };
     let mut waiting = members.into_iter();
     let mut ended = Vec::with_capacity(PATHS);
@@ -95,7 +97,10 @@ impl<M> Pool<M> {
     /// Follows a path until it walks deep inside a medium or ends.
     fn advance<C: Crew<Member = M>>(&mut self, slot: u32, crew: &mut C, tally: &mut Tally) {
         match crew.advance(&mut self.members[slot as usize], tally) {
-            Some(walker) => self.walks[walker.medium.0 as usize].push(slot, walker),
+            Some(walker) => {
+                let in_block = walker.room.block().is_some();
+                self.walks[2 * walker.medium.0 as usize + usize::from(in_block)].push(slot, walker);
+            }
             None => self.free.push(slot),
         }
     }

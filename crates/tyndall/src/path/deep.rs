@@ -5,7 +5,7 @@ use crate::{
     integrator::{
         VolPath,
         volpath::Sink,
-        walk::{Announced, Ball, Depths, End, Walker, light_odds},
+        walk::{Announced, Depths, End, Walker, light_odds},
     },
     light::Reference,
     math::{Ray, Vec3},
@@ -13,7 +13,7 @@ use crate::{
     phase::Phase,
     sampling::Rng,
     scene::{Lit, Scene},
-    shape::Interaction,
+    shape::{Ball, Interaction, Room},
     spectrum::Lanes,
     tally::Tally,
 };
@@ -26,7 +26,7 @@ pub struct Surroundings {
     /// Whether `depths` is about the medium that the path is in.
     asked: bool,
     /// No surface and no light is here.
-    ball: Ball,
+    room: Room,
     /// The surface that the path came from.
     behind: Behind,
     /// What a walk has left undone.
@@ -67,8 +67,8 @@ impl Behind {
             if radius < 2.0 * around.radius {
                 break;
             }
-            let ball = Ball::near(scene, p + inward * (radius - around.radius), radius);
-            if ball.room(p) > 0.5 * around.radius {
+            let ball = scene.ball_near(p + inward * (radius - around.radius), radius);
+            if ball.depth(p) > 0.5 * around.radius {
                 self.touched = Some(radius);
                 return ball;
             }
@@ -105,7 +105,7 @@ pub struct Attempt {
     /// The number that was drawn, in [0, 1].
     draw: f32,
     /// No surface and no light is here.
-    ball: Ball,
+    room: Room,
     /// How far another is worth to look for, where this one may be loose [length].
     closer: f32,
     /// The probability where no medium is between \[1\].
@@ -117,14 +117,14 @@ pub struct Attempt {
 impl Attempt {
     /// As at every surface.
     pub const CERTAIN: Self =
-        Self { odds: 1.0, supposed: 1.0, draw: 0.0, ball: Ball::NONE, closer: 0.0, share: 1.0, sigma_min: 0.0 };
+        Self { odds: 1.0, supposed: 1.0, draw: 0.0, room: Room::NONE, closer: 0.0, share: 1.0, sigma_min: 0.0 };
     /// As in a medium that no light reaches: what paths run into there counts in full.
     pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, draw: 1.0, ..Self::CERTAIN };
 
-    /// In a medium, with this ball around it.
+    /// In a medium, with this room around it.
     #[inline]
-    fn within(depths: &Depths, ball: Ball) -> Self {
-        Self { ball, share: depths.share(), sigma_min: depths.sigma_min, ..Self::CERTAIN }
+    fn within(depths: &Depths, room: Room) -> Self {
+        Self { room, share: depths.share(), sigma_min: depths.sigma_min, ..Self::CERTAIN }
     }
 
     /// Whether it is.
@@ -133,12 +133,12 @@ impl Attempt {
         self.draw <= self.odds
     }
 
-    /// The same once it is known that the light is along `dir` from `p`: no more likely than the transmittance as far as the ball
+    /// The same once it is known that the light is along `dir` from `p`: no more likely than the transmittance as far as the room
     /// reaches. `None` if it is not made.
     #[inline]
     #[must_use]
     pub fn towards(&self, p: Vec3, dir: Vec3) -> Option<Self> {
-        self.lowered(self.ball.reach(p, dir))
+        self.lowered(self.room.reach(p, dir))
     }
 
     /// The same with another ball around `p`, where the one that was known may be loose.
@@ -149,7 +149,7 @@ impl Attempt {
             return Some(*self);
         }
         let cap = ((self.share / self.odds).ln() + CLOSER_LOOK) / self.sigma_min;
-        self.lowered(Ball::around(scene, p, cap.min(self.closer)).radius)
+        self.lowered(scene.ball(p, cap.min(self.closer)).radius)
     }
 
     #[inline]
@@ -161,7 +161,7 @@ impl Attempt {
 
 impl Default for Surroundings {
     fn default() -> Self {
-        Self { depths: None, asked: false, ball: Ball::NONE, behind: Behind::default(), left: Left::Nothing }
+        Self { depths: None, asked: false, room: Room::NONE, behind: Behind::default(), left: Left::Nothing }
     }
 }
 
@@ -205,17 +205,22 @@ impl Path {
     pub(crate) fn look_around(&mut self, scene: &Scene, p: Vec3) -> Attempt {
         let Some(depths) = self.depths(scene) else { return self.attempt(scene) };
         if std::mem::replace(&mut self.around.left, Left::Nothing) == Left::Collision {
-            return Attempt { supposed: depths.odds(self.around.ball.room(p)), ..Attempt::NONE };
+            return Attempt { supposed: depths.odds(self.around.room.depth(p)), ..Attempt::NONE };
         }
-        let most = depths.farthest(scene);
-        let around = Ball::around(scene, p, most.min(self.around.behind.distance(p)));
-        let ball = self.around.behind.touching(scene, p, around, most);
-        self.around.ball = ball;
-        let (odds, draw) = (depths.odds(around.radius), self.sampler.rng.next_positive());
-        Attempt { odds, supposed: depths.share(), draw, ..Attempt::within(&depths, ball) }
+        let (room, depth) = match scene.room(depths.id) {
+            Some(room) => (room, room.depth(p)),
+            None => {
+                let most = depths.farthest(scene);
+                let around = scene.ball(p, most.min(self.around.behind.distance(p)));
+                (Room::Ball(self.around.behind.touching(scene, p, around, most)), around.radius)
+            }
+        };
+        self.around.room = room;
+        let (odds, draw) = (depths.odds(depth), self.sampler.rng.next_positive());
+        Attempt { odds, supposed: depths.share(), draw, ..Attempt::within(&depths, room) }
     }
 
-    /// A light sample that a walk has announced, and what the path weighs there. The ball of the walk may be loose: what
+    /// A light sample that a walk has announced, and what the path weighs there. A ball may be loose: what
     /// [`Attempt::towards`] and [`Attempt::closer`] say is still to be asked.
     #[inline]
     pub(crate) fn on_walk(
@@ -227,8 +232,8 @@ impl Path {
         let depths = self.around.depths?;
         let supposed = announced.odds;
         let draw = rng.next_positive() * supposed;
-        let closer = depths.farthest(scene);
-        let attempt = Attempt { odds: supposed, supposed, draw, closer, ..Attempt::within(&depths, self.around.ball) };
+        let closer = if scene.room(depths.id).is_some() { 0.0 } else { depths.farthest(scene) };
+        let attempt = Attempt { odds: supposed, supposed, draw, closer, ..Attempt::within(&depths, self.around.room) };
         let settled = depths.settle(announced.collisions, announced.length);
         let mut weights = self.weights;
         weights.walk(settled.beta, settled.density);
@@ -238,8 +243,8 @@ impl Path {
     /// Begins a walk, if there is room for one.
     #[inline]
     pub fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
-        let Surroundings { depths: Some(depths), ball, left: Left::Nothing, .. } = self.around else { return None };
-        if !depths.is_roomy(ball.reach(self.ray.origin, self.ray.dir))
+        let Surroundings { depths: Some(depths), room, left: Left::Nothing, .. } = self.around else { return None };
+        if !depths.is_roomy(room.reach(self.ray.origin, self.ray.dir))
             || self.sampler.is_stratified(self.history.vertices)
         {
             return None;
@@ -251,7 +256,7 @@ impl Path {
             dir: self.ray.dir,
             came: self.ray.dir,
             rng: self.sampler.rng,
-            ball,
+            room,
             mean_free_path: 1.0 / depths.sigma_t,
             sigma_min: depths.sigma_min,
             share: depths.share(),
@@ -280,7 +285,7 @@ impl Path {
                 if walker.collisions > 0 {
                     self.history.walked(walker.collisions);
                     sink.turned(&mut self.history, Turn::Medium(depths.id), walker.collisions);
-                    let odds = depths.odds(self.around.ball.room(walker.p));
+                    let odds = depths.odds(self.around.room.depth(walker.p));
                     self.weights.scatter(Lanes::ONE, phase.eval(walker.cos_theta), odds);
                     self.last_vertex = Reference { p: walker.p, normal: None };
                     self.sight = Sight::from(depths.lit);
@@ -314,10 +319,10 @@ impl Path {
         self.around.left == Left::Collision
     }
 
-    /// Whether a flight of this length ends in the ball that the path knows: nothing can be in its way [length].
+    /// Whether a flight of this length ends in the room that the path knows: nothing can be in its way [length].
     #[inline]
     pub(super) fn stays_clear(&self, flight: f32) -> bool {
-        flight < self.around.ball.reach(self.ray.origin, self.ray.dir)
+        flight < self.around.room.reach(self.ray.origin, self.ray.dir)
     }
 
     /// Leaves a flight whose length is drawn [length].

@@ -270,6 +270,24 @@ impl Geometry {
         in_world.into_iter().chain(instances.map(move |instance| instance.placement.bounds(&bounds)))
     }
 
+    /// Boxes around all instances that there are in the world.
+    pub fn placed_instances(&self) -> impl Iterator<Item = Bounds> {
+        self.world.others.iter().filter_map(|primitive| match *primitive {
+            Primitive::Instance(index) => {
+                let Instance { group, placement } = &self.instances[index as usize];
+                Some(placement.bounds(&self.groups[*group as usize].bounds))
+            }
+            Primitive::Sphere { centre, radius, instance, .. } if instance != NONE => {
+                Some(Bounds { min: centre - radius, max: centre + radius })
+            }
+            Primitive::Shape { object, instance } if instance != NONE => {
+                let placement = &self.instances[instance as usize].placement;
+                Some(placement.bounds(&self.object_bounds(ObjectId(object))))
+            }
+            _ => None,
+        })
+    }
+
     /// A shape, in world space unless it is part of a group.
     pub fn shape(&self, object: ObjectId) -> &Shape {
         &self.shapes[object.0 as usize]

@@ -27,6 +27,7 @@ mod mesh;
 mod part;
 mod passage;
 mod patch;
+mod room;
 mod seams;
 mod sphere;
 
@@ -43,5 +44,6 @@ pub use mesh::Mesh;
 pub use part::{SpherePart, Turn};
 pub use passage::Passed;
 pub use patch::Patch;
+pub use room::{Ball, Block, Room};
 pub use seams::Seams;
 pub use sphere::Sphere;

@@ -1,10 +1,10 @@
 //! Walks deep inside a medium: many collisions without a ray.
 //!
-//! A path knows a *ball* around it that no surface cuts and that holds no light ([`Ball`], from
-//! [`Scene::clearance`](crate::scene::Scene::clearance)). While its flights end inside, nothing can be in their way, and
-//! a collision costs a logarithm, a rotation and four random numbers.
+//! A path knows a *room* around it that no surface cuts and that holds no light ([`Room`]): all of a body that is a ball or a block
+//! ([`Scene::room`]), or else a ball around it, from [`Scene::clearance`]. While its flights end inside, nothing can be in their way,
+//! and a collision costs a logarithm, a rotation and four random numbers.
 //!
-//! **Light.** From a point with clearance `c` no lane has more than `exp(−σ_t c)` of transmittance to any light. There
+//! **Light.** From a point with so much room, `c`, around it no lane has more than `exp(−σ_t c)` of transmittance to any light. There
 //! light is sampled with probability
 //!
 //! ```text
@@ -21,7 +21,7 @@
 //! ([`Settled`]): spectral MIS over the lanes costs nothing within.
 //!
 //! A light sample does not hold a walk up: the walk says where ([`Announced`]) and goes on. It ends ([`End`]) where a flight
-//! would leave the ball (it is then traced like any other) or where roulette is due. [`Walker::alone`] follows one walk;
+//! would leave the room (it is then traced like any other) or where roulette is due. [`Walker::alone`] follows one walk;
 //! [`together`] follows many with SIMD and, since every path owns its random numbers and no operation is fused, gives the
 //! same bits.
 
@@ -31,11 +31,12 @@ pub(crate) mod together;
 pub(crate) use step::light_odds;
 
 use crate::{
-    math::{Vec3, rounding::gamma},
+    math::Vec3,
     medium::{Coefficients, MediumId},
     phase::Phase,
     sampling::Rng,
     scene::{Lit, Scene},
+    shape::Room,
     spectrum::Lanes,
 };
 
@@ -50,54 +51,6 @@ const MOST_COLLISIONS: f32 = 256.0;
 const BENT_SHARE: f32 = 0.3;
 /// What a throughput may fall to between two games of roulette \[1\].
 const LEAST_THROUGHPUT: f32 = 0.25;
-
-/// A ball that no surface cuts and that holds no light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ball {
-    /// Its centre [length].
-    pub centre: Vec3,
-    /// Its radius, 0 for none [length].
-    pub radius: f32,
-}
-
-impl Ball {
-    /// None.
-    pub const NONE: Self = Self { centre: Vec3::ZERO, radius: 0.0 };
-
-    /// Around a point of the scene, no larger than `cap` [length]. It is smaller than the clearance by what rounding can do
-    /// to a point within it.
-    #[inline]
-    pub fn around(scene: &Scene, p: Vec3, cap: f32) -> Self {
-        Self::within(p, scene.clearance(p, cap))
-    }
-
-    /// Around a point of the scene or one near it; no larger than `cap` [length] where that saves work.
-    #[inline]
-    pub fn near(scene: &Scene, p: Vec3, cap: f32) -> Self {
-        let (centre, clearance) = scene.clearance_near(p, cap);
-        Self::within(centre, clearance)
-    }
-
-    #[inline]
-    fn within(centre: Vec3, clearance: f32) -> Self {
-        let margin = gamma(16) * (centre.abs().max_element() + clearance);
-        Self { centre, radius: (clearance - margin).max(0.0) }
-    }
-
-    /// How far it is from `p` to its surface at least, not above 0 outside [length].
-    #[inline]
-    pub fn room(&self, p: Vec3) -> f32 {
-        self.radius - (p - self.centre).length()
-    }
-
-    /// How far it is from `p` along `dir` to its surface; 0 outside [length].
-    #[inline]
-    pub fn reach(&self, p: Vec3, dir: Vec3) -> f32 {
-        let from = p - self.centre;
-        let (along, beyond) = (from.dot(dir), self.radius * self.radius - from.length_squared());
-        if beyond > 0.0 { (along * along + beyond).sqrt() - along } else { 0.0 }
-    }
-}
 
 /// What a walk needs to know of a medium, at the wavelengths and with the hero of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -184,10 +137,10 @@ impl Depths {
         }
     }
 
-    /// The probability of a light sample at a point with this room [length].
+    /// The probability of a light sample at a point so deep [length].
     #[inline]
-    pub fn odds(&self, room: f32) -> f32 {
-        light_odds(self.share(), self.sigma_min * room.max(0.0))
+    pub fn odds(&self, depth: f32) -> f32 {
+        light_odds(self.share(), self.sigma_min * depth.max(0.0))
     }
 
     /// The weights of `collisions` after flights of total `length` [length].
@@ -212,8 +165,8 @@ pub struct Walker {
     pub came: Vec3,
     /// Random numbers.
     pub rng: Rng,
-    /// The ball that holds `p`.
-    pub ball: Ball,
+    /// The room that holds `p`.
+    pub room: Room,
     /// `1/σ_t` of the hero [length].
     pub mean_free_path: f32,
     /// The least `σ_t` of all lanes [1/length].
@@ -254,7 +207,7 @@ pub struct Announced {
 /// Why a walk ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// The flight under way may leave the ball.
+    /// The flight under way may leave the room.
     Leaves,
     /// So many collisions want a game of roulette.
     Roulette,
@@ -284,7 +237,7 @@ impl Walker {
             dir: self.came,
             collisions: self.collisions,
             length: self.length,
-            odds: light_odds(self.share, self.sigma_min * self.ball.room(self.p).max(0.0)),
+            odds: light_odds(self.share, self.sigma_min * self.room.depth(self.p).max(0.0)),
             rng: self.rng.aside(),
         }
     }

@@ -38,16 +38,16 @@ pub(super) fn is_lit(code: u32) -> bool {
 
 /// Flies and collides, announces a light sample or not, and turns if the walk goes on.
 ///
-/// Where the flight leaves the ball, nothing but [`Walker::flight`] and the random numbers change; where the walk ends at
+/// Where the flight leaves the room, nothing but [`Walker::flight`] and the random numbers change; where the walk ends at
 /// a collision, the direction is still that of the flight that led there. `LIT` says whether light can be reached.
 #[inline(always)]
 pub(super) fn collide<const LIT: bool>(w: &mut Walker, cosine: impl Fn(f32) -> f32) -> u32 {
     let [u_flight, u_light, u_cosine, u_azimuth] = w.rng.next_four();
     w.flight = -fast::ln(positive(u_flight)) * w.mean_free_path;
     let p = w.p + w.dir * w.flight;
-    let room = w.ball.radius - length(p - w.ball.centre);
-    let stays = room > 0.0;
-    let is_lit = LIT && positive(u_light) <= light_odds(w.share, w.sigma_min * room.max(0.0));
+    let depth = w.room.depth(p);
+    let stays = depth > 0.0;
+    let is_lit = LIT && positive(u_light) <= light_odds(w.share, w.sigma_min * depth.max(0.0));
     let is_due = w.collisions + 1 >= w.limit;
     let cos_theta = cosine(unit(u_cosine));
     let dir = deflect(w.dir, cos_theta, unit(u_azimuth));
@@ -72,9 +72,4 @@ pub(super) fn collide<const LIT: bool>(w: &mut Walker, cosine: impl Fn(f32) -> f
 #[inline(always)]
 fn select(first: bool, a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(if first { a.x } else { b.x }, if first { a.y } else { b.y }, if first { a.z } else { b.z })
-}
-
-#[inline(always)]
-fn length(v: Vec3) -> f32 {
-    (v.x * v.x + v.y * v.y + v.z * v.z).sqrt()
 }

@@ -3,8 +3,14 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::{Announced, Ball, End, Walker, step};
-use crate::{math::Vec3, medium::MediumId, phase::Phase, sampling::Rng};
+use super::{Announced, End, Walker, step};
+use crate::{
+    math::Vec3,
+    medium::MediumId,
+    phase::Phase,
+    sampling::Rng,
+    shape::{Ball, Block, Room},
+};
 
 /// Lanes: what the widest instruction set does at once.
 pub(crate) const WIDTH: usize = 16;
@@ -12,11 +18,15 @@ pub(crate) const WIDTH: usize = 16;
 /// Advances walks with one model of phase functions.
 macro_rules! advance {
     ($walks:expr, $level:expr, $model:expr, $least:expr, $hear:expr) => {
-        if $walks.lit {
-            dispatch!($level, simd => $walks.run::<_, true>(simd, |u| $model.sample(u), $least, &mut $hear))
-        } else {
-            dispatch!($level, simd => $walks.run::<_, false>(simd, |u| $model.sample(u), $least, &mut $hear))
+        match ($walks.lit, $walks.block) {
+            (true, None) => advance!($walks, $level, true, Lanes::ball, $model, $least, $hear),
+            (false, None) => advance!($walks, $level, false, Lanes::ball, $model, $least, $hear),
+            (true, Some(block)) => advance!($walks, $level, true, in_block(block), $model, $least, $hear),
+            (false, Some(block)) => advance!($walks, $level, false, in_block(block), $model, $least, $hear),
         }
+    };
+    ($walks:expr, $level:expr, $lit:expr, $room:expr, $model:expr, $least:expr, $hear:expr) => {
+        dispatch!($level, simd => $walks.run::<_, $lit>(simd, $room, |u| $model.sample(u), $least, &mut $hear))
     };
 }
 
@@ -29,18 +39,19 @@ pub(crate) enum News<'a> {
     Ended(&'a Walker, End),
 }
 
-/// Walks under way in one medium, each with the number of its path.
+/// Walks under way in one medium, all in the same block or each in a ball of its own, with the numbers of their paths.
 #[derive(Debug)]
 pub(crate) struct Walks {
     level: Level,
     medium: MediumId,
     lit: bool,
+    block: Option<Block>,
     waiting: Vec<(u32, Walker)>,
 }
 
 impl Walks {
-    pub(crate) fn new(medium: MediumId, lit: bool) -> Self {
-        Self { level: Level::new(), medium, lit, waiting: Vec::new() }
+    pub(crate) fn new(medium: MediumId, lit: bool, block: Option<Block>) -> Self {
+        Self { level: Level::new(), medium, lit, block, waiting: Vec::new() }
     }
 
     pub(crate) fn medium(&self) -> MediumId {
@@ -71,6 +82,7 @@ impl Walks {
     fn run<S: Simd, const LIT: bool>(
         &mut self,
         simd: S,
+        room: impl Fn(&Lanes, usize) -> Room + Copy,
         cosine: impl Fn(f32) -> f32 + Copy,
         least: usize,
         hear: &mut impl FnMut(u32, News),
@@ -82,7 +94,7 @@ impl Walks {
                 #[inline(always)]
                 || {
                     loop {
-                        let codes = lanes.collide::<LIT>(cosine);
+                        let codes = lanes.collide::<LIT>(room, cosine);
                         if codes.iter().fold(0, |any, code| any | code) != step::GOES_ON {
                             return codes;
                         }
@@ -94,7 +106,7 @@ impl Walks {
                 if code == step::GOES_ON || path == NOBODY {
                     continue;
                 }
-                let walker = lanes.get(lane, self.medium, LIT);
+                let walker = lanes.get(lane, self.medium, LIT, room);
                 if step::is_lit(code) {
                     hear(path, News::Light(&walker.announced()));
                 }
@@ -105,7 +117,7 @@ impl Walks {
             }
         }
         for (lane, path) in lanes.path.into_iter().enumerate().filter(|(_, path)| *path != NOBODY) {
-            self.waiting.push((path, lanes.get(lane, self.medium, LIT)));
+            self.waiting.push((path, lanes.get(lane, self.medium, LIT, room)));
         }
     }
 
@@ -113,7 +125,7 @@ impl Walks {
     #[inline(always)]
     fn fill(&mut self, lanes: &mut Lanes, lane: usize) -> bool {
         let Some((path, walker)) = self.waiting.pop() else {
-            lanes.rest(lane);
+            lanes.rest(lane, self.block.map_or(Vec3::ZERO, |block| block.centre));
             return false;
         };
         lanes.path[lane] = path;
@@ -149,26 +161,37 @@ struct Lanes {
 
 impl Lanes {
     #[inline(always)]
-    fn collide<const LIT: bool>(&mut self, cosine: impl Fn(f32) -> f32 + Copy) -> [u32; WIDTH] {
+    fn collide<const LIT: bool>(
+        &mut self,
+        room: impl Fn(&Self, usize) -> Room + Copy,
+        cosine: impl Fn(f32) -> f32 + Copy,
+    ) -> [u32; WIDTH] {
         let mut codes = [0; WIDTH];
         for (lane, code) in codes.iter_mut().enumerate() {
-            let mut walker = self.get(lane, MediumId(0), LIT);
+            let mut walker = self.get(lane, MediumId(0), LIT, room);
             *code = step::collide::<LIT>(&mut walker, cosine);
             self.set(lane, &walker);
         }
         codes
     }
 
-    /// A lane without a walk: it stays where it is and has nothing to say, so that it never stops the others.
+    /// A lane without a walk: it stays at a point that is inside and has nothing to say, so that it never stops the others.
     #[inline(always)]
-    fn rest(&mut self, i: usize) {
+    fn rest(&mut self, i: usize, inside: Vec3) {
+        (self.p[0][i], self.p[1][i], self.p[2][i]) = (inside.x, inside.y, inside.z);
         self.path[i] = NOBODY;
         (self.radius[i], self.mean_free_path[i], self.share[i]) = (f32::INFINITY, 0.0, 0.0);
         (self.collisions[i], self.limit[i]) = (0, u32::MAX);
     }
 
     #[inline(always)]
-    fn get(&self, i: usize, medium: MediumId, lit: bool) -> Walker {
+    fn ball(&self, i: usize) -> Room {
+        let centre = Vec3::new(self.centre[0][i], self.centre[1][i], self.centre[2][i]);
+        Room::Ball(Ball { centre, radius: self.radius[i] })
+    }
+
+    #[inline(always)]
+    fn get(&self, i: usize, medium: MediumId, lit: bool, room: impl Fn(&Self, usize) -> Room) -> Walker {
         let vector = |v: &[[f32; WIDTH]; 3]| Vec3::new(v[0][i], v[1][i], v[2][i]);
         Walker {
             medium,
@@ -176,7 +199,7 @@ impl Lanes {
             dir: vector(&self.dir),
             came: vector(&self.came),
             rng: Rng { key: [self.key[0][i], self.key[1][i]], counter: self.counter[i] },
-            ball: Ball { centre: vector(&self.centre), radius: self.radius[i] },
+            room: room(self, i),
             mean_free_path: self.mean_free_path[i],
             sigma_min: self.sigma_min[i],
             share: self.share[i],
@@ -195,8 +218,10 @@ impl Lanes {
         put(&mut self.p, walker.p);
         put(&mut self.dir, walker.dir);
         put(&mut self.came, walker.came);
-        put(&mut self.centre, walker.ball.centre);
-        self.radius[i] = walker.ball.radius;
+        if let Room::Ball(ball) = walker.room {
+            put(&mut self.centre, ball.centre);
+            self.radius[i] = ball.radius;
+        }
         self.mean_free_path[i] = walker.mean_free_path;
         self.sigma_min[i] = walker.sigma_min;
         self.share[i] = walker.share;
@@ -208,6 +233,12 @@ impl Lanes {
         self.collisions[i] = walker.collisions;
         self.limit[i] = walker.limit;
     }
+}
+
+/// The room of all walks that are in one block.
+fn in_block(block: Block) -> impl Fn(&Lanes, usize) -> Room + Copy {
+    #[inline(always)]
+    move |_, _| Room::Block(block)
 }
 
 #[cfg(test)]
@@ -222,7 +253,14 @@ mod tests {
         [best, Level::baseline(), sse4_2.unwrap_or(best), avx2.unwrap_or(best)]
     }
 
-    fn walker(number: u32, medium: MediumId, lit: bool) -> Walker {
+    /// A rhombohedron around where walks begin.
+    fn block() -> Block {
+        let axes = [Vec3::new(0.8, 0.6, 0.0), Vec3::new(0.8, -0.6, 0.0), Vec3::Z];
+        Block { centre: Vec3::new(1.1, 1.9, 3.2), axes, half: [2.0, 3.0, 4.0] }
+    }
+
+    fn walker(number: u32, medium: MediumId, lit: bool, block: Option<Block>) -> Walker {
+        let ball = Ball { centre: Vec3::new(1.0, 2.0, 3.0), radius: 2.0 + number as f32 * 0.1 };
         let dir = Vec3::new(0.6, 0.0, -0.8);
         Walker {
             medium,
@@ -230,7 +268,7 @@ mod tests {
             dir: if number.is_multiple_of(2) { dir } else { Vec3::Z },
             came: dir,
             rng: Rng::for_sample((number, 0), 0, 1),
-            ball: Ball { centre: Vec3::new(1.0, 2.0, 3.0), radius: 2.0 + number as f32 * 0.1 },
+            room: block.map_or(Room::Ball(ball), Room::Block),
             mean_free_path: 0.3,
             share: 0.5 + 0.5 * (number % 2) as f32,
             sigma_min: 2.0,
@@ -246,14 +284,18 @@ mod tests {
     /// If they had, they would stop the others at each of their collisions.
     #[test]
     fn lanes_at_rest_have_nothing_to_say() {
-        let mut lanes = Lanes::default();
-        // Half of them have walked before: to the end of their ball and of their collisions.
-        for lane in 0..WIDTH / 2 {
-            lanes.set(lane, &Walker { collisions: 50, limit: 50, ..walker(lane as u32, MediumId(0), true) });
-        }
-        (0..WIDTH).for_each(|lane| lanes.rest(lane));
-        for _ in 0..10_000 {
-            assert_eq!(lanes.collide::<true>(|u| 1.0 - 2.0 * u), [step::GOES_ON; WIDTH]);
+        for block in [None, Some(block())] {
+            let mut lanes = Lanes::default();
+            // Half of them have walked before: to the end of their room and of their collisions.
+            for lane in 0..WIDTH / 2 {
+                let walker = walker(lane as u32, MediumId(0), true, block);
+                lanes.set(lane, &Walker { collisions: 50, limit: 50, ..walker });
+            }
+            (0..WIDTH).for_each(|lane| lanes.rest(lane, block.map_or(Vec3::ZERO, |block| block.centre)));
+            let room = |lanes: &Lanes, i: usize| block.map_or_else(|| lanes.ball(i), Room::Block);
+            for _ in 0..10_000 {
+                assert_eq!(lanes.collide::<true>(room, |u| 1.0 - 2.0 * u), [step::GOES_ON; WIDTH]);
+            }
         }
     }
 
@@ -269,15 +311,17 @@ mod tests {
             Phase::blend(&forward, &Phase::Rayleigh(Rayleigh), 0.5).unwrap(),
         ];
         let medium = MediumId(0);
+        let kinds = [true, false].into_iter().flat_map(|lit| [None, Some(block())].map(|block| (lit, block)));
+        let kinds: Vec<_> = kinds.flat_map(|(lit, block)| levels().map(|level| (lit, block, level))).collect();
         for phase in &phases {
-            for (lit, level) in [true, false].into_iter().flat_map(|lit| levels().map(move |level| (lit, level))) {
-                let mut walks = Walks { level, medium, lit, waiting: Vec::new() };
-                (0..100).for_each(|number| walks.push(number, walker(number, medium, lit)));
+            for &(lit, block, level) in &kinds {
+                let mut walks = Walks { level, medium, lit, block, waiting: Vec::new() };
+                (0..100).for_each(|number| walks.push(number, walker(number, medium, lit, block)));
                 let (mut ends, mut heard) = (0, vec![Vec::new(); 100]);
                 walks.advance(phase, 1, |number, news| match news {
                     News::Light(announced) => heard[number as usize].push(*announced),
                     News::Ended(together, end) => {
-                        let (mut alone, mut announced) = (walker(number, medium, lit), Vec::new());
+                        let (mut alone, mut announced) = (walker(number, medium, lit, block), Vec::new());
                         assert_eq!(alone.alone(phase, |a| announced.push(*a)), end, "{phase:?} {number}");
                         assert_eq!(alone, *together, "{phase:?} {number}");
                         assert_eq!(announced, heard[number as usize], "{phase:?} {number}");
