@@ -217,7 +217,7 @@ impl Path {
         };
         self.around.room = room;
         let (odds, draw) = (depths.odds(depth), self.sampler.rng.next_positive());
-        Attempt { odds, supposed: depths.share(), draw, ..Attempt::within(&depths, room) }
+        Attempt { odds, supposed: odds, draw, ..Attempt::within(&depths, room) }
     }
 
     /// A light sample that a walk has announced, and what the path weighs there. A ball may be loose: what
