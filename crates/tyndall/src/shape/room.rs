@@ -192,3 +192,98 @@ fn axes(faces: &[[Vec3; 3]]) -> Option<[Vec3; 3]> {
 fn margin(centre: Vec3, away: f32) -> f32 {
     gamma(16) * (centre.abs().max_element() + away)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Transform;
+    use crate::shape::GeometryBuilder;
+    use glam::{DAffine3, DMat3, DVec3, Quat};
+    use testkit::Stream;
+
+    /// The cube from −1 to 1, each vertex once or anew for each of its three faces, placed in the world.
+    fn cuboid(placed: &Transform, shared: bool) -> Mesh {
+        let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0;
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+        let mesh = if shared {
+            Mesh { positions: (0..8).map(corner).collect(), indices: triangles.collect(), ..Mesh::default() }
+        } else {
+            let positions = triangles.flatten().map(corner).collect();
+            Mesh { positions, indices: (0..12).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(), ..Mesh::default() }
+        };
+        mesh.placed(placed, false)
+    }
+
+    fn uniform(stream: &mut Stream, low: f64, high: f64) -> f64 {
+        low + (high - low) * stream.next_f64()
+    }
+
+    /// Turned, sheared, stretched up to a thousandfold and far from the origin.
+    fn placement(stream: &mut Stream) -> Transform {
+        let mut draw = |low, high| uniform(stream, low, high);
+        let turn = Quat::from_euler(glam::EulerRot::XYZ, draw(0.0, 6.0) as f32, draw(0.0, 6.0) as f32, 1.0);
+        let scale = DVec3::new(1.0, draw(0.1, 10.0), draw(0.1, 10.0)) * 10f64.powf(draw(-1.5, 1.5));
+        let shear = DMat3::from_cols(DVec3::X, DVec3::new(draw(-0.5, 0.5), 1.0, 0.0), DVec3::Z);
+        let matrix = DMat3::from_quat(turn.as_dquat().normalize()) * shear * DMat3::from_diagonal(scale);
+        let to = DVec3::new(draw(-5.0, 5.0), draw(-5.0, 5.0), draw(-5.0, 5.0));
+        Transform::new(DAffine3 { matrix3: matrix, translation: to }.into()).unwrap()
+    }
+
+    /// Against the distance to the surface itself and its place in double precision: never more, and less by rounding alone.
+    #[test]
+    fn a_block_reaches_as_far_as_the_surface_around_it() {
+        let mut stream = Stream::new(1);
+        for round in 0..40 {
+            let placed = placement(&mut stream);
+            let mesh = cuboid(&placed, round % 2 == 0);
+            let block = Block::inside(&mesh).unwrap();
+            let to_local = placed.matrix.as_dmat4().inverse();
+            let mut builder = GeometryBuilder::new();
+            builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
+            let geometry = builder.build().unwrap();
+            let size = geometry.bounds().extent().length() + geometry.bounds().max.abs().max_element();
+            for _ in 0..200 {
+                let mut draw = || uniform(&mut stream, -1.0, 1.0) as f32;
+                let p = placed.point(Vec3::new(draw(), draw(), draw()));
+                let dir = Vec3::new(draw(), draw(), draw()).normalize();
+                let local = to_local.transform_point3(p.as_dvec3());
+                let planes = [0, 1, 2].map(|i| (1.0 - local[i].abs()) / to_local.row(i).truncate().length());
+                let distance = planes.into_iter().fold(f64::INFINITY, f64::min) as f32;
+                let depth = block.depth(p);
+                assert!((distance - 2e-6 * size..distance).contains(&depth), "{depth} {distance} {size}");
+                let reach = block.reach(p, dir);
+                let end = to_local.transform_point3(p.as_dvec3() + dir.as_dvec3() * f64::from(reach));
+                assert!(end.abs().max_element() < 1.0, "{end}");
+                assert!(block.depth(p + dir * reach) < 1e-6 * size, "{reach}");
+            }
+            assert!(block.depth(block.centre + size) < 0.0 && block.reach(block.centre + size, Vec3::X) == 0.0);
+            let bounds = Room::Block(block).bounds();
+            assert!(geometry.bounds().contains(bounds.min) && geometry.bounds().contains(bounds.max));
+            assert!((bounds.extent() - geometry.bounds().extent()).abs().max_element() < 1e-4 * size);
+        }
+    }
+
+    #[test]
+    fn what_is_no_block_is_none() {
+        let whole = cuboid(&Transform::IDENTITY, true);
+        let dented = |corner: usize, to: Vec3| {
+            let mut mesh = whole.clone();
+            mesh.positions[corner] = to;
+            Block::inside(&mesh)
+        };
+        assert!(Block::inside(&whole).is_some());
+        assert_eq!(dented(7, Vec3::splat(0.9)), None);
+        assert_eq!(dented(7, Vec3::new(1.0, 1.0, -1.0)), None);
+        assert_eq!(dented(7, Vec3::splat(f32::MAX)), None);
+        assert_eq!(Block::inside(&Mesh { indices: whole.indices[..11].to_vec(), ..whole.clone() }), None);
+        let flat = Mesh {
+            positions: whole.positions.iter().map(|p| *p * Vec3::new(1.0, 1.0, 0.0)).collect(),
+            ..whole.clone()
+        };
+        assert_eq!(Block::inside(&flat), None);
+        // A block within rounding of nothing has no room.
+        let far = whole.positions.iter().map(|p| *p * 1e-3 + Vec3::splat(1e5)).collect();
+        assert_eq!(Block::inside(&Mesh { positions: far, ..whole }), None);
+    }
+}
