@@ -9,11 +9,12 @@ use tyndall::{
     light::{Light, PointLight},
     material::Material,
     math::Vec3,
-    medium::Homogeneous,
+    medium::{Homogeneous, MediumId},
     phase::Phase,
     render::{Rendering, Settings, render},
     sampling::SamplerKind,
     scene::Scene,
+    shape::Room,
     spectrum::ColorMode,
 };
 
@@ -102,6 +103,49 @@ fn walks_find_the_light_that_rays_find() {
             }
         }
     }
+}
+
+/// A medium is a room where it fills one ball or block, whatever touches that; not where something else is in it, or where it has
+/// other bodies or none.
+#[test]
+fn media_that_fill_a_ball_or_a_block_are_rooms() {
+    let (low, high) = (Vec3::ZERO, Vec3::ONE);
+    let dense = || Some(medium([0.0; 3], [10.0; 3], 0.0));
+    let room = |furnish: &dyn Fn(&mut World)| {
+        let mut world = World::seen(Vec3::new(0.0, 0.0, 6.0), Vec3::ZERO);
+        world.sky(1.0);
+        furnish(&mut world);
+        world.scene().room(MediumId(0))
+    };
+    let cuboid = |world: &mut World| {
+        world.cuboid(low, high, Material::Null, dense());
+    };
+    let wall = |world: &mut World, low: Vec3| {
+        world.cuboid(low, low + 2.0, diffuse(0.5), None);
+    };
+    let ball = |world: &mut World, centre: Vec3, inside| {
+        world.sphere(centre, 0.2, glass(1.5, 0.0), inside);
+    };
+    let lamp = |world: &mut World, position| {
+        world.lights.push(Light::Point(PointLight { position, intensity: common::grey(1.0), luminance: 1.0 }));
+    };
+    assert!(matches!(room(&|world| ball(world, low, dense())), Some(Room::Ball(_))));
+    let is_block = |furnish: &dyn Fn(&mut World)| {
+        let room = room(&|world| {
+            cuboid(world);
+            furnish(world);
+        });
+        assert!(matches!(room, None | Some(Room::Block(_))));
+        room.is_some()
+    };
+    assert!(is_block(&|_| ()));
+    assert!(is_block(&|world| wall(world, Vec3::new(-0.5, -2.0, -0.5))));
+    assert!(!is_block(&|world| wall(world, Vec3::new(-0.5, -1.99, -0.5))));
+    assert!(is_block(&|world| lamp(world, Vec3::splat(1.1))));
+    assert!(!is_block(&|world| lamp(world, Vec3::splat(0.9))));
+    assert!(!is_block(&|world| ball(world, Vec3::splat(0.5), None)));
+    assert!(!is_block(&|world| world.faceted_ball(9.0, 8, Material::Null, medium([0.0; 3], [1.0; 3], 0.0))));
+    assert_eq!(room(&|world| world.faceted_ball(1.0, 8, Material::Null, medium([0.0; 3], [1.0; 3], 0.0))), None);
 }
 
 /// Lamps without a surface, few and many, in a ball: no clearance reaches over one.

@@ -68,7 +68,7 @@ pub(crate) fn duels() -> Vec<Duel> {
     vec![
         adaptive("g_cornell", Llvm, "integrator=path sampler=multijitter", 256, 64),
         adaptive("d_fog_box", Llvm, "integrator=volpath sampler=multijitter", 64, 32),
-        even("d2_fog_lamp", Llvm, "integrator=volpath sampler=multijitter", 64, 32),
+        adaptive("d2_fog_lamp", Llvm, "integrator=volpath sampler=multijitter", 64, 32),
         even("e_hair", Llvm, "integrator=path sampler=multijitter", 64, 32),
         even("f_grains", Scalar, "integrator=path", 32, 24),
         even("f2_grains_direct", Scalar, "integrator=path", 40, 24),

@@ -207,13 +207,12 @@ impl Path {
         if std::mem::replace(&mut self.around.left, Left::Nothing) == Left::Collision {
             return Attempt { supposed: depths.odds(self.around.room.depth(p)), ..Attempt::NONE };
         }
-        let (room, depth) = match scene.room(depths.id) {
-            Some(room) => (room, room.depth(p)),
-            None => {
-                let most = depths.farthest(scene);
-                let around = scene.ball(p, most.min(self.around.behind.distance(p)));
-                (Room::Ball(self.around.behind.touching(scene, p, around, most)), around.radius)
-            }
+        let (room, depth) = if let Some(room) = scene.room(depths.id) {
+            (room, room.depth(p))
+        } else {
+            let most = depths.farthest(scene);
+            let around = scene.ball(p, most.min(self.around.behind.distance(p)));
+            (Room::Ball(self.around.behind.touching(scene, p, around, most)), around.radius)
         };
         self.around.room = room;
         let (odds, draw) = (depths.odds(depth), self.sampler.rng.next_positive());

@@ -3,6 +3,8 @@
 //! A [`Ball`] is found around any point by its clearance. A [`Block`] is what a body with six flat faces has inside: it ends only
 //! where the body does, and nothing is to be looked for.
 
+use glam::DVec3;
+
 use super::Mesh;
 use crate::math::{Bounds, Vec3, rounding::gamma};
 
@@ -179,12 +181,12 @@ fn axes(faces: &[[Vec3; 3]]) -> Option<[Vec3; 3]> {
     for face in faces {
         let [a, b, c] = face.map(Vec3::as_dvec3);
         let normal = (b - a).cross(c - a).try_normalize()?;
-        if axes.iter().all(|axis: &glam::DVec3| axis.dot(normal).abs() < PARALLEL) {
+        if axes.iter().all(|axis: &DVec3| axis.dot(normal).abs() < PARALLEL) {
             axes.push(normal);
         }
     }
     let [a, b, c] = axes[..] else { return None };
-    Some([a, b, c].map(|axis| axis.as_vec3()))
+    Some([a, b, c].map(DVec3::as_vec3))
 }
 
 /// What rounding can do to a point that is so far from `centre` [length].
@@ -198,7 +200,7 @@ mod tests {
     use super::*;
     use crate::math::Transform;
     use crate::shape::GeometryBuilder;
-    use glam::{DAffine3, DMat3, DVec3, Quat};
+    use glam::{DAffine3, DMat3, Quat};
     use testkit::Stream;
 
     /// The cube from −1 to 1, each vertex once or anew for each of its three faces, placed in the world.
