@@ -242,7 +242,7 @@ fn heap(grains: &Pack, reach: f64, medium: Homogeneous, below: f32) -> Scene {
 
 /// The mean of a picture with its standard error.
 fn brightness(scene: &Scene, explicit_grains: Option<u32>, seed: u64) -> (f64, f64) {
-    let settings = Settings { spp: 16, seed, ..Settings::default() };
+    let settings = Settings { spp: 32, seed, ..Settings::default() };
     let rendering = render(scene, &VolPath { explicit_grains, ..VolPath::default() }, &settings, &());
     assert_eq!((rendering.tally.bad_samples, rendering.tally.leaks), (0, 0));
     let pixels = &rendering.film.pixels;
