@@ -15,8 +15,8 @@ use crate::{
     lpe::{Automaton, Names, PathLayer, automaton::BuildError},
     material::Material,
     math::{Bounds, Ray, Vec3, rounding::gamma},
-    medium::{Body, Coefficients, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Ball, Distances, Geometry, Hit, Interaction, ObjectId, Room, Shape},
+    medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
+    shape::{Distances, Geometry, Hit, Interaction, ObjectId, Room, Shape},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -174,7 +174,7 @@ impl Scene {
         let walls = lit::walls(&self, &bodies);
         let is_open = |(_, o): &(ObjectId, &Object)| may_be_open(&materials[o.material.0 as usize], materials);
         let media = || (0..).map(MediumId).take(self.media.len());
-        let extent: Vec<_> = media().map(|medium| extent(medium, camera, geometry, &objects, &bodies)).collect();
+        let extent: Vec<_> = media().map(|medium| rooms::extent(medium, camera, geometry, &objects, &bodies)).collect();
         self.facts = Facts {
             // A surface of a body may not be there.
             has_null_surfaces: objects.iter().any(is_open) || !bodies.is_empty(),
@@ -193,9 +193,9 @@ impl Scene {
                 .collect(),
             only_wall: media().map(|m| lit::only_wall(m, &objects, &walls, geometry)).collect(),
             walls,
-            deepest: extent.iter().map(|extent| deepest(extent, geometry)).collect(),
+            deepest: extent.iter().map(|extent| rooms::deepest(extent, geometry)).collect(),
             extent,
-            bare_lights: bare_lights(lights),
+            bare_lights: rooms::bare_lights(lights),
             bodies,
             ..Facts::default()
         };
@@ -204,7 +204,7 @@ impl Scene {
         };
         self.facts.holds_lamp = (0..).map(MediumId).take(self.media.len()).map(holds_lamp).collect();
         self.facts.room = rooms::of_media(&self, &objects);
-        self.facts.distances = distances(&self);
+        self.facts.distances = rooms::distances(&self);
         self.facts.around_camera = enclosure::around_camera(&self);
         self
     }
@@ -334,170 +334,11 @@ impl Scene {
         self.facts.extent[medium.0 as usize].contains(p)
     }
 
-    /// A lower bound on the distance from `p` to the nearest surface and to the nearest light without a surface, at most
-    /// `cap` [length].
-    pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
-        let cap = self.clear_of_lights(p, cap);
-        let bound = self.facts.distances.as_ref().and_then(|d| d.bound(p, |centre| self.search(centre)));
-        bound.map_or_else(|| self.geometry.clearance(p, cap), |bound| bound.min(cap))
-    }
-
-    /// A point at `p` or not far from it, with its clearance, for whoever can choose: quickly, where distances are remembered.
-    #[inline]
-    pub fn clearance_near(&self, p: Vec3, cap: f32) -> (Vec3, f32) {
-        match self.facts.distances.as_ref().and_then(|d| d.cell(p, |centre| self.search(centre))) {
-            Some((centre, nearest)) => (centre, self.clear_of_lights(centre, nearest)),
-            None => (p, self.clearance(p, cap)),
-        }
-    }
-
-    /// A ball around `p`, as large as its clearance and no larger than `cap` [length].
-    #[inline]
-    pub fn ball(&self, p: Vec3, cap: f32) -> Ball {
-        Ball::within(p, self.clearance(p, cap))
-    }
-
-    /// The same around a point near `p`, where that saves work.
-    #[inline]
-    pub fn ball_near(&self, p: Vec3, cap: f32) -> Ball {
-        let (centre, clearance) = self.clearance_near(p, cap);
-        Ball::within(centre, clearance)
-    }
-
-    /// All that a medium fills, if that is one ball or block in which no other surface and no light is.
-    #[inline]
-    pub fn room(&self, medium: MediumId) -> Option<Room> {
-        self.facts.room[medium.0 as usize]
-    }
-
-    /// A lower bound on the distance to the nearest light without a surface, at most `cap` [length].
-    fn clear_of_lights(&self, p: Vec3, cap: f32) -> f32 {
-        self.facts.bare_lights.iter().map(|bounds| bounds.distance(p)).fold(cap, f32::min)
-    }
-
-    /// The distance to the nearest surface, however far that is [length].
-    fn search(&self, p: Vec3) -> f32 {
-        self.geometry.clearance(p, f32::INFINITY)
-    }
-
-    /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.
-    #[inline]
-    pub fn deepest(&self, medium: MediumId) -> f32 {
-        self.facts.deepest[medium.0 as usize]
-    }
-
-    /// The box around a light, if that is small and in a medium: one that rays in it may pass closely.
-    #[inline]
-    pub fn small_lamp(&self, medium: MediumId, lamp: LightId) -> Option<Bounds> {
-        let bounds = self.lights.get(lamp).bounds()?;
-        let is_small = bounds.extent().length() < SMALL_LAMP * self.deepest(medium);
-        (is_small && overlap(&self.facts.extent[medium.0 as usize], &bounds)).then_some(bounds)
-    }
-
-    /// Whether collisions in a medium are to be aimed at lamps: where a small one is in it and it is thin. The same for
-    /// whatever lane is the hero, as all weights of multiple importance sampling must be.
-    #[inline]
-    pub fn aims(&self, medium: MediumId, coefficients: &Coefficients) -> bool {
-        let Coefficients { sigma_t, sigma_s, .. } = *coefficients;
-        self.facts.holds_lamp[medium.0 as usize]
-            && self.light_can_reach(Some(medium))
-            && sigma_t.mean() * self.deepest(medium) < THIN
-            && !sigma_s.is_zero()
-    }
-
     /// Whether shadow rays must walk through surfaces that let light pass.
     #[inline]
     pub fn has_null_surfaces(&self) -> bool {
         self.facts.has_null_surfaces
     }
-
-    /// The whole surface of a medium, if it is one ball at which light samples may bend.
-    #[inline]
-    pub fn only_wall(&self, medium: MediumId) -> Option<ObjectId> {
-        self.facts.only_wall[medium.0 as usize]
-    }
-
-    /// Whether sampling lights straight from inside a medium can ever succeed: not where every way out leads through glass
-    /// and no light is within.
-    #[inline]
-    pub fn light_can_reach(&self, medium: Option<MediumId>) -> bool {
-        self.lit(medium) == Lit::Straight
-    }
-
-    /// How light samples from inside a medium reach lights.
-    #[inline]
-    pub fn lit(&self, medium: Option<MediumId>) -> Lit {
-        medium.map_or(Lit::Straight, |id| self.facts.lit[id.0 as usize])
-    }
-
-    /// The index inside an object over that outside \[1\], if light samples may bend at its surface.
-    #[inline]
-    pub fn wall(&self, object: ObjectId) -> Option<f32> {
-        self.facts.walls[object.0 as usize]
-    }
-}
-
-/// Of so many surfaces the nearest is found quickly.
-const FEW_SURFACES: usize = 1000;
-/// The diagonal of a lamp that counts as small, over the depth of the medium that it is in \[1\].
-const SMALL_LAMP: f32 = 0.2;
-/// The depth of a medium from which on walks serve it better than collisions aimed at its lamps \[mean free paths\].
-const THIN: f32 = 8.0;
-
-/// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
-/// in the world itself.
-fn extent(
-    medium: MediumId,
-    camera: &Camera,
-    geometry: &Geometry,
-    objects: &[(ObjectId, &Object)],
-    bodies: &[Body],
-) -> Bounds {
-    let mut extent = Bounds::EMPTY;
-    for &(id, object) in objects {
-        let Some(interface) = object.interface else { continue };
-        let is_closed = || match object.body {
-            Some(member) => bodies[member.body.0 as usize].closed,
-            None => geometry.is_closed(&[id]),
-        };
-        if interface.outside == Some(medium) {
-            return Bounds::EVERYTHING;
-        }
-        if interface.inside == Some(medium) {
-            if geometry.is_in_group(id) || !is_closed() || geometry.faces_inward(id) {
-                return Bounds::EVERYTHING;
-            }
-            extent = extent.union(geometry.object_bounds(id));
-        }
-    }
-    if camera.medium == Some(medium) { Bounds::EVERYTHING } else { extent }
-}
-
-/// A memory of distances over all media that have ends, where there are many surfaces.
-fn distances(scene: &Scene) -> Option<Distances> {
-    let ends = scene.facts.extent.iter().filter(|extent| **extent != Bounds::EVERYTHING);
-    let bodies = ends.fold(Bounds::EMPTY, |all, extent| all.union(*extent));
-    (scene.geometry.census().surfaces() > FEW_SURFACES).then(|| Distances::over(&bodies)).flatten()
-}
-
-fn deepest(extent: &Bounds, geometry: &Geometry) -> f32 {
-    let world = geometry.bounds();
-    if *extent != Bounds::EVERYTHING {
-        0.5 * extent.extent().min_element()
-    } else if world.is_empty() {
-        f32::INFINITY
-    } else {
-        0.5 * world.extent().max_element()
-    }
-}
-
-/// The places of lights that no clearance to surfaces tells of.
-fn bare_lights(lights: &LightTable) -> Vec<Bounds> {
-    /// More would cost more than they tell.
-    const MOST: usize = 16;
-    let is_bare = |light: &&Light| !matches!(light, Light::Area(_));
-    let places: Vec<_> = lights.lights.iter().filter(is_bare).filter_map(Light::bounds).collect();
-    if places.len() <= MOST { places } else { vec![places.iter().fold(Bounds::EMPTY, |all, b| all.union(*b))] }
 }
 
 fn overlap(a: &Bounds, b: &Bounds) -> bool {

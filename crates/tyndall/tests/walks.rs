@@ -2,13 +2,15 @@
 
 mod common;
 
+use glam::{DMat4, DVec3};
+
 use common::{World, diffuse, glass, medium};
 use tyndall::{
     camera::{CameraModel, Perspective},
     integrator::{Deep, VolPath},
     light::{Light, PointLight},
     material::Material,
-    math::Vec3,
+    math::{Transform, Vec3},
     medium::{Homogeneous, MediumId},
     phase::Phase,
     render::{Rendering, Settings, render},
@@ -62,6 +64,7 @@ fn many_paths_at_once_give_the_bits_of_one_after_the_other() {
     for color in [ColorMode::Rgb, ColorMode::Mono, ColorMode::Spectral] {
         for phase in phases() {
             let scene = dense_still_life(color, &phase);
+            assert!(matches!(scene.room(MediumId(1)), Some(Room::Block(_))), "walks in a block too");
             for max_depth in [None, Some(20)] {
                 let settings = Settings { spp: 5, seed: 3, ..Settings::default() };
                 let of = |deep| picture(&scene, &VolPath { deep, max_depth, ..VolPath::default() }, &settings);
@@ -144,6 +147,24 @@ fn media_that_fill_a_ball_or_a_block_are_rooms() {
     assert!(is_block(&|world| lamp(world, Vec3::splat(1.1))));
     assert!(!is_block(&|world| lamp(world, Vec3::splat(0.9))));
     assert!(!is_block(&|world| ball(world, Vec3::splat(0.5), None)));
+    // Instances of a ball, of a flattened one and of a mesh: beside the block, and in it.
+    for (height, is_free) in [(3.0, true), (0.5, false)] {
+        for (round, stretch) in [(true, 1.0), (true, 0.5), (false, 1.0)] {
+            let placed = |world: &mut World| {
+                let group = world.builder.begin_group();
+                if round {
+                    ball(world, Vec3::ZERO, None);
+                } else {
+                    wall(world, Vec3::ZERO);
+                }
+                world.builder.end_group();
+                let stretch = DMat4::from_scale(DVec3::new(1.0, stretch, 1.0));
+                let to = DMat4::from_translation(DVec3::new(0.5, height, 0.5)) * stretch;
+                world.builder.add_instance(group, &Transform::new(to).unwrap()).unwrap();
+            };
+            assert_eq!(is_block(&placed), is_free, "{height} {round} {stretch}");
+        }
+    }
     assert!(!is_block(&|world| world.faceted_ball(9.0, 8, Material::Null, medium([0.0; 3], [1.0; 3], 0.0))));
     assert_eq!(room(&|world| world.faceted_ball(1.0, 8, Material::Null, medium([0.0; 3], [1.0; 3], 0.0))), None);
 }

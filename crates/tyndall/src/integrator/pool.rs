@@ -63,7 +63,7 @@ pub fn follow<C: Crew>(scene: &Scene, crew: &mut C, members: impl IntoIterator<I
         }
         let least = if walks.len() < WIDTH { 1 } else { WIDTH };
         let (members, phase) = (&mut pool.members, &scene.medium(walks.medium()).phase);
-        walks.advance(phase, least, |slot, news| {
+        walks.advance(phase, least, &mut |slot, news| {
             let member = &mut members[slot as usize];
             match news {
                 News::Light(announced) => crew.light(member, announced, phase, tally),

@@ -1,11 +1,12 @@
-//! How light samples from inside a medium reach lights: known before the first ray, and the same for every path.
+//! How light samples from inside a medium reach lights, and which lamps are aimed at: known before the first ray, and the same for
+//! every path.
 
 use super::{Object, Scene, overlap};
 use crate::{
-    light::{Light, LightTable},
+    light::{Light, LightId, LightTable},
     material::{Index, Material},
     math::Bounds,
-    medium::{Body, MediumId},
+    medium::{Body, Coefficients, MediumId},
     shape::{Geometry, ObjectId, Shape},
     surface::may_be_open,
 };
@@ -19,6 +20,57 @@ pub enum Lit {
     Straight,
     /// Through walls that bend them: see [`crate::bend`].
     Bent,
+}
+
+/// The diagonal of a lamp that counts as small, over the depth of the medium that it is in \[1\].
+const SMALL_LAMP: f32 = 0.2;
+/// The depth of a medium from which on walks serve it better than collisions aimed at its lamps \[mean free paths\].
+const THIN: f32 = 8.0;
+
+impl Scene {
+    /// The whole surface of a medium, if it is one ball at which light samples may bend.
+    #[inline]
+    pub fn only_wall(&self, medium: MediumId) -> Option<ObjectId> {
+        self.facts.only_wall[medium.0 as usize]
+    }
+
+    /// Whether sampling lights straight from inside a medium can ever succeed: not where every way out leads through glass
+    /// and no light is within.
+    #[inline]
+    pub fn light_can_reach(&self, medium: Option<MediumId>) -> bool {
+        self.lit(medium) == Lit::Straight
+    }
+
+    /// How light samples from inside a medium reach lights.
+    #[inline]
+    pub fn lit(&self, medium: Option<MediumId>) -> Lit {
+        medium.map_or(Lit::Straight, |id| self.facts.lit[id.0 as usize])
+    }
+
+    /// The index inside an object over that outside \[1\], if light samples may bend at its surface.
+    #[inline]
+    pub fn wall(&self, object: ObjectId) -> Option<f32> {
+        self.facts.walls[object.0 as usize]
+    }
+
+    /// The box around a light, if that is small and in a medium: one that rays in it may pass closely.
+    #[inline]
+    pub fn small_lamp(&self, medium: MediumId, lamp: LightId) -> Option<Bounds> {
+        let bounds = self.lights.get(lamp).bounds()?;
+        let is_small = bounds.extent().length() < SMALL_LAMP * self.deepest(medium);
+        (is_small && overlap(&self.facts.extent[medium.0 as usize], &bounds)).then_some(bounds)
+    }
+
+    /// Whether collisions in a medium are to be aimed at lamps: where a small one is in it and it is thin. The same for
+    /// whatever lane is the hero, as all weights of multiple importance sampling must be.
+    #[inline]
+    pub fn aims(&self, medium: MediumId, coefficients: &Coefficients) -> bool {
+        let Coefficients { sigma_t, sigma_s, .. } = *coefficients;
+        self.facts.holds_lamp[medium.0 as usize]
+            && self.light_can_reach(Some(medium))
+            && sigma_t.mean() * self.deepest(medium) < THIN
+            && !sigma_s.is_zero()
+    }
 }
 
 /// A medium is lit directly if it has an open boundary (one without a material, or with holes), if it fills the space of a

@@ -1,21 +1,136 @@
-//! What the whole of a medium is, where that is simple: a ball or a block in which nothing else is. Paths in it need not look for
-//! surfaces, see [`crate::integrator::walk`].
+//! How much room there is in media: where they end, how far the nearest surface is, and what the whole of a medium is where that is
+//! simple, a ball or a block in which nothing else is. Paths in such a [`Room`] need not look for surfaces, see
+//! [`crate::integrator::walk`].
+
+use std::cell::LazyCell;
 
 use super::{Object, Scene, overlap};
 use crate::{
-    math::Bounds,
-    medium::MediumId,
-    shape::{Ball, Block, ObjectId, Room, Shape},
+    camera::Camera,
+    light::{Light, LightTable},
+    math::{Bounds, Vec3},
+    medium::{Body, MediumId},
+    shape::{Ball, Block, Distances, Geometry, ObjectId, Room, Shape},
 };
 
-/// By medium.
+impl Scene {
+    /// A lower bound on the distance from `p` to the nearest surface and to the nearest light without a surface, at most
+    /// `cap` [length].
+    pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
+        let cap = self.clear_of_lights(p, cap);
+        let bound = self.facts.distances.as_ref().and_then(|d| d.bound(p, |centre| self.search(centre)));
+        bound.map_or_else(|| self.geometry.clearance(p, cap), |bound| bound.min(cap))
+    }
+
+    /// A point at `p` or not far from it, with its clearance, for whoever can choose: quickly, where distances are remembered.
+    #[inline]
+    pub fn clearance_near(&self, p: Vec3, cap: f32) -> (Vec3, f32) {
+        match self.facts.distances.as_ref().and_then(|d| d.cell(p, |centre| self.search(centre))) {
+            Some((centre, nearest)) => (centre, self.clear_of_lights(centre, nearest)),
+            None => (p, self.clearance(p, cap)),
+        }
+    }
+
+    /// A ball around `p`, as large as its clearance and no larger than `cap` [length].
+    #[inline]
+    pub fn ball(&self, p: Vec3, cap: f32) -> Ball {
+        Ball::within(p, self.clearance(p, cap))
+    }
+
+    /// The same around a point near `p`, where that saves work.
+    #[inline]
+    pub fn ball_near(&self, p: Vec3, cap: f32) -> Ball {
+        let (centre, clearance) = self.clearance_near(p, cap);
+        Ball::within(centre, clearance)
+    }
+
+    /// All that a medium fills, if that is one ball or block in which no other surface and no light is.
+    #[inline]
+    pub fn room(&self, medium: MediumId) -> Option<Room> {
+        self.facts.room[medium.0 as usize]
+    }
+
+    /// A lower bound on the distance to the nearest light without a surface, at most `cap` [length].
+    fn clear_of_lights(&self, p: Vec3, cap: f32) -> f32 {
+        self.facts.bare_lights.iter().map(|bounds| bounds.distance(p)).fold(cap, f32::min)
+    }
+
+    /// The distance to the nearest surface, however far that is [length].
+    fn search(&self, p: Vec3) -> f32 {
+        self.geometry.clearance(p, f32::INFINITY)
+    }
+
+    /// The greatest clearance that there can be in a medium [length]; where it has no ends, a guess: half of the scene.
+    #[inline]
+    pub fn deepest(&self, medium: MediumId) -> f32 {
+        self.facts.deepest[medium.0 as usize]
+    }
+}
+
+/// Of so many surfaces the nearest is found quickly.
+const FEW_SURFACES: usize = 1000;
+/// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
+/// in the world itself.
+pub(super) fn extent(
+    medium: MediumId,
+    camera: &Camera,
+    geometry: &Geometry,
+    objects: &[(ObjectId, &Object)],
+    bodies: &[Body],
+) -> Bounds {
+    let mut extent = Bounds::EMPTY;
+    for &(id, object) in objects {
+        let Some(interface) = object.interface else { continue };
+        let is_closed = || match object.body {
+            Some(member) => bodies[member.body.0 as usize].closed,
+            None => geometry.is_closed(&[id]),
+        };
+        if interface.outside == Some(medium) {
+            return Bounds::EVERYTHING;
+        }
+        if interface.inside == Some(medium) {
+            if geometry.is_in_group(id) || !is_closed() || geometry.faces_inward(id) {
+                return Bounds::EVERYTHING;
+            }
+            extent = extent.union(geometry.object_bounds(id));
+        }
+    }
+    if camera.medium == Some(medium) { Bounds::EVERYTHING } else { extent }
+}
+
+/// A memory of distances over all media that have ends, where there are many surfaces.
+pub(super) fn distances(scene: &Scene) -> Option<Distances> {
+    let ends = scene.facts.extent.iter().filter(|extent| **extent != Bounds::EVERYTHING);
+    let bodies = ends.fold(Bounds::EMPTY, |all, extent| all.union(*extent));
+    (scene.geometry.census().surfaces() > FEW_SURFACES).then(|| Distances::over(&bodies)).flatten()
+}
+
+/// See [`Scene::deepest`].
+pub(super) fn deepest(extent: &Bounds, geometry: &Geometry) -> f32 {
+    let world = geometry.bounds();
+    if *extent != Bounds::EVERYTHING {
+        0.5 * extent.extent().min_element()
+    } else if world.is_empty() {
+        f32::INFINITY
+    } else {
+        0.5 * world.extent().max_element()
+    }
+}
+
+/// The places of lights that no clearance to surfaces tells of.
+pub(super) fn bare_lights(lights: &LightTable) -> Vec<Bounds> {
+    /// More would cost more than they tell.
+    const MOST: usize = 16;
+    let is_bare = |light: &&Light| !matches!(light, Light::Area(_));
+    let places: Vec<_> = lights.lights.iter().filter(is_bare).filter_map(Light::bounds).collect();
+    if places.len() <= MOST { places } else { vec![places.iter().fold(Bounds::EMPTY, |all, b| all.union(*b))] }
+}
+
+/// By medium: all that it fills, if that is a room.
 pub(super) fn of_media(scene: &Scene, objects: &[(ObjectId, &Object)]) -> Vec<Option<Room>> {
     let media = (0..scene.media.len()).map(|medium| MediumId(medium as u32));
     let bodies: Vec<_> = media.map(|medium| body(scene, medium, objects)).collect();
-    if bodies.iter().all(Option::is_none) {
-        return bodies.iter().map(|_| None).collect();
-    }
-    let boxes = boxes(scene, objects);
+    let boxes = LazyCell::new(|| boxes(scene, objects));
     let is_free = |id: ObjectId, room: &Room| {
         let bounds = room.bounds();
         boxes.iter().all(|(other, b)| *other == Some(id) || !overlap(&bounds, b))

@@ -278,7 +278,7 @@ impl Geometry {
                 Some(placement.bounds(&self.groups[*group as usize].bounds))
             }
             Primitive::Sphere { centre, radius, instance, .. } if instance != NONE => {
-                Some(Bounds { min: centre - radius, max: centre + radius })
+                Some(Sphere::new(centre, radius).bounds())
             }
             Primitive::Shape { object, instance } if instance != NONE => {
                 let placement = &self.instances[instance as usize].placement;

@@ -26,7 +26,7 @@ macro_rules! advance {
         }
     };
     ($walks:expr, $level:expr, $lit:expr, $room:expr, $model:expr, $least:expr, $hear:expr) => {
-        dispatch!($level, simd => $walks.run::<_, $lit>(simd, $room, |u| $model.sample(u), $least, &mut $hear))
+        dispatch!($level, simd => $walks.run::<_, $lit>(simd, $room, |u| $model.sample(u), $least, $hear))
     };
 }
 
@@ -67,7 +67,7 @@ impl Walks {
     }
 
     /// Walks until fewer than `least` walks are under way, and tells `hear` what becomes of each.
-    pub(crate) fn advance(&mut self, phase: &Phase, least: usize, mut hear: impl FnMut(u32, News)) {
+    pub(crate) fn advance(&mut self, phase: &Phase, least: usize, hear: &mut dyn FnMut(u32, News)) {
         let level = self.level;
         match phase {
             Phase::Isotropic(model) => advance!(self, level, model, least, hear),
@@ -85,7 +85,7 @@ impl Walks {
         room: impl Fn(&Lanes, usize) -> Room + Copy,
         cosine: impl Fn(f32) -> f32 + Copy,
         least: usize,
-        hear: &mut impl FnMut(u32, News),
+        hear: &mut dyn FnMut(u32, News),
     ) {
         let mut lanes = Lanes::default();
         let mut under_way = (0..WIDTH).filter(|&lane| self.fill(&mut lanes, lane)).count();
@@ -318,7 +318,7 @@ mod tests {
                 let mut walks = Walks { level, medium, lit, block, waiting: Vec::new() };
                 (0..100).for_each(|number| walks.push(number, walker(number, medium, lit, block)));
                 let (mut ends, mut heard) = (0, vec![Vec::new(); 100]);
-                walks.advance(phase, 1, |number, news| match news {
+                walks.advance(phase, 1, &mut |number, news| match news {
                     News::Light(announced) => heard[number as usize].push(*announced),
                     News::Ended(together, end) => {
                         let (mut alone, mut announced) = (walker(number, medium, lit, block), Vec::new());
