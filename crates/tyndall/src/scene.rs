@@ -16,7 +16,7 @@ use crate::{
     material::Material,
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Distances, Geometry, Hit, Interaction, ObjectId, Room, Shape},
+    shape::{Distances, Geometry, Hit, Hollows, Interaction, ObjectId, Room, Shape},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -102,6 +102,8 @@ struct Facts {
     extent: Vec<Bounds>,
     /// By medium: all that it fills, if that is simple.
     room: Vec<Option<Room>>,
+    /// Spheres that light can enter and in which nothing else is.
+    hollows: Hollows,
     /// By medium: the greatest clearance in it [length].
     deepest: Vec<f32>,
     /// By medium: whether a small lamp is in it.
@@ -204,6 +206,7 @@ impl Scene {
         };
         self.facts.holds_lamp = (0..).map(MediumId).take(self.media.len()).map(holds_lamp).collect();
         self.facts.room = rooms::of_media(&self, &objects);
+        self.facts.hollows = rooms::hollows(&self);
         self.facts.distances = rooms::distances(&self);
         self.facts.around_camera = enclosure::around_camera(&self);
         self

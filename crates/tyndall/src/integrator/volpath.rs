@@ -126,6 +126,7 @@ impl Path {
                     (_, Material::Hole) => {
                         self.pass_opening(scene, &hit);
                         self.ray = hit.spawn(self.ray.dir);
+                        self.around.leave(scene, &hit, self.ray.dir);
                         return Status::Alive;
                     }
                     (Skin::Open, _) | (Skin::Written, Material::Null) => {
@@ -205,7 +206,7 @@ impl Path {
         self.pass_opening(scene, hit);
         self.enter(scene, hit);
         self.ray = hit.spawn(self.ray.dir);
-        self.around.leave(hit, self.ray.dir);
+        self.around.leave(scene, hit, self.ray.dir);
     }
 
     /// Finds out what is at a surface where bodies can overlap, and what is behind it.
@@ -302,7 +303,7 @@ impl Path {
             if scattered.crossed {
                 self.enter(scene, hit);
             }
-            self.around.leave(hit, self.ray.dir);
+            self.around.leave(scene, hit, self.ray.dir);
             self.leave_grain(scene, hit, scattered.crossed);
         }
         Status::Alive

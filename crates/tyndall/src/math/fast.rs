@@ -15,15 +15,10 @@ pub fn ln(x: f32) -> f32 {
     let e = exponent as f32;
     let f = mantissa - 1.0;
     let f2 = f * f;
-    let mut p = 7.037_683_6e-2;
-    p = p * f - 1.151_461e-1;
-    p = p * f + 1.167_699_9e-1;
-    p = p * f - 1.242_014_1e-1;
-    p = p * f + 1.424_932_3e-1;
-    p = p * f - 1.666_805_7e-1;
-    p = p * f + 2.000_071_5e-1;
-    p = p * f - 2.499_999_4e-1;
-    p = p * f + 3.333_333_1e-1;
+    let f4 = f2 * f2;
+    let low = (3.333_333_1e-1 - 2.499_999_4e-1 * f) + (2.000_071_5e-1 - 1.666_805_7e-1 * f) * f2;
+    let high = (1.424_932_3e-1 - 1.242_014_1e-1 * f) + (1.167_699_9e-1 - 1.151_461e-1 * f) * f2;
+    let p = low + high * f4 + 7.037_683_6e-2 * (f4 * f4);
     let y = p * f * f2 - 2.121_944_4e-4 * e - 0.5 * f2;
     f + y + 0.693_359_4 * e
 }
@@ -36,13 +31,10 @@ pub fn exp(x: f32) -> f32 {
     let held = if x < -87.0 { -87.0 } else { x };
     let (n, whole) = nearest(held * std::f32::consts::LOG2_E);
     let r = held - n * 0.693_359_4 + n * 2.121_944_4e-4;
-    let mut p = 1.987_569_1e-4;
-    p = p * r + 1.398_2e-3;
-    p = p * r + 8.333_452e-3;
-    p = p * r + 4.166_579_6e-2;
-    p = p * r + 1.666_666_5e-1;
-    p = p * r + 5e-1;
-    let y = p * r * r + r + 1.0;
+    let r2 = r * r;
+    let low = (5e-1 + 1.666_666_5e-1 * r) + (4.166_579_6e-2 + 8.333_452e-3 * r) * r2;
+    let p = low + (1.398_2e-3 + 1.987_569_1e-4 * r) * (r2 * r2);
+    let y = p * r2 + r + 1.0;
     let power = f32::from_bits(whole.wrapping_add(127) << 23);
     if x > 88.0 {
         f32::INFINITY
@@ -87,14 +79,11 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     let (least, greatest) = (ax.min(ay), ax.max(ay));
     let t = if greatest > 0.0 { least / greatest } else { 0.0 };
     let t2 = t * t;
-    let mut p = 2.866_225_7e-3;
-    p = p * t2 - 1.616_573_67e-2;
-    p = p * t2 + 4.290_961_38e-2;
-    p = p * t2 - 7.528_964_00e-2;
-    p = p * t2 + 1.065_626_393e-1;
-    p = p * t2 - 1.420_889_944e-1;
-    p = p * t2 + 1.999_355_085e-1;
-    p = p * t2 - 3.333_314_528e-1;
+    // In pairs, after Estrin 1960: their sums need not wait for each other.
+    let t4 = t2 * t2;
+    let low = (-3.333_314_528e-1 + 1.999_355_085e-1 * t2) + (-1.420_889_944e-1 + 1.065_626_393e-1 * t2) * t4;
+    let high = (-7.528_964_00e-2 + 4.290_961_38e-2 * t2) + (-1.616_573_67e-2 + 2.866_225_7e-3 * t2) * t4;
+    let p = low + high * (t4 * t4);
     let octant = t + t * t2 * p;
     let quadrant = if ay > ax { FRAC_PI_2 - octant } else { octant };
     (if x < 0.0 { PI - quadrant } else { quadrant }).copysign(y)

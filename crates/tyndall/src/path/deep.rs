@@ -13,7 +13,7 @@ use crate::{
     phase::Phase,
     sampling::Rng,
     scene::{Lit, Scene},
-    shape::{Ball, Interaction, Room},
+    shape::{Ball, Hit, Hollow, Interaction, Room},
     spectrum::Lanes,
     tally::Tally,
 };
@@ -29,6 +29,8 @@ pub struct Surroundings {
     room: Room,
     /// The surface that the path came from.
     behind: Behind,
+    /// The sphere that it is in, if nothing else is in there.
+    hollow: Option<Hollow>,
     /// What a walk has left undone.
     left: Left,
 }
@@ -161,16 +163,26 @@ impl Attempt {
 
 impl Default for Surroundings {
     fn default() -> Self {
-        Self { depths: None, asked: false, room: Room::NONE, behind: Behind::default(), left: Left::Nothing }
+        Self { depths: None, asked: false, room: Room::NONE, behind: Behind::default(), hollow: None, left: Left::Nothing }
     }
 }
 
 impl Surroundings {
     /// The path leaves a surface along `dir`.
     #[inline]
-    pub(crate) fn leave(&mut self, hit: &Interaction, dir: Vec3) {
+    pub(crate) fn leave(&mut self, scene: &Scene, hit: &Interaction, dir: Vec3) {
         let inward = if hit.ng.dot(dir) < 0.0 { -hit.ng } else { hit.ng };
         self.behind = Behind { from: Some(hit.p), inward: Some(inward), ..self.behind };
+        self.hollow = scene.hollow(hit, dir);
+    }
+
+    /// [`Scene::first_surface`], which is known in a hollow sphere.
+    #[inline]
+    pub(super) fn first_surface(&self, scene: &Scene, ray: &Ray, flight: f32) -> Option<Hit> {
+        match self.hollow.and_then(|hollow| hollow.exit(ray)) {
+            Some(exit) => (exit.t < flight + scene.rounding(ray, flight)).then_some(exit),
+            None => scene.first_surface(ray, flight),
+        }
     }
 }
 
@@ -321,7 +333,7 @@ impl Path {
     /// Whether a flight of this length ends in the room that the path knows: nothing can be in its way [length].
     #[inline]
     pub(super) fn stays_clear(&self, flight: f32) -> bool {
-        flight < self.around.room.reach(self.ray.origin, self.ray.dir)
+        flight.is_finite() && flight < self.around.room.reach(self.ray.origin, self.ray.dir)
     }
 
     /// Leaves a flight whose length is drawn [length].

@@ -73,10 +73,10 @@ impl Path {
         }
         tally.rays += 1;
         if lamp.is_none() {
-            let hit = scene.first_surface(&self.ray, flight);
+            let hit = self.around.first_surface(scene, &self.ray, flight);
             return self.arrive(scene, hit, flight, None, tally);
         }
-        let hit = scene.first_surface(&self.ray, f32::INFINITY);
+        let hit = self.around.first_surface(scene, &self.ray, f32::INFINITY);
         let aim = self.aim(scene, lamp, hit.map_or(f32::INFINITY, |hit| hit.t), aiming, tally);
         let hit = hit.filter(|hit| hit.t < flight + scene.rounding(&self.ray, flight));
         self.arrive(scene, hit, flight, aim, tally)

@@ -8,9 +8,10 @@ use super::{Object, Scene, overlap};
 use crate::{
     camera::Camera,
     light::{Light, LightTable},
+    material::Material,
     math::{Bounds, Vec3},
     medium::{Body, MediumId},
-    shape::{Ball, Block, Distances, Geometry, ObjectId, Room, Shape},
+    shape::{Ball, Block, Distances, Geometry, Hollow, Hollows, Interaction, ObjectId, Room, Shape},
 };
 
 impl Scene {
@@ -48,6 +49,12 @@ impl Scene {
     #[inline]
     pub fn room(&self, medium: MediumId) -> Option<Room> {
         self.facts.room[medium.0 as usize]
+    }
+
+    /// The sphere into which a ray along `dir` leaves a surface, if nothing else is in it.
+    #[inline]
+    pub(crate) fn hollow(&self, hit: &Interaction, dir: Vec3) -> Option<Hollow> {
+        self.facts.hollows.entered(hit, dir)
     }
 
     /// A lower bound on the distance to the nearest light without a surface, at most `cap` [length].
@@ -124,6 +131,14 @@ pub(super) fn bare_lights(lights: &LightTable) -> Vec<Bounds> {
     let is_bare = |light: &&Light| !matches!(light, Light::Area(_));
     let places: Vec<_> = lights.lights.iter().filter(is_bare).filter_map(Light::bounds).collect();
     if places.len() <= MOST { places } else { vec![places.iter().fold(Bounds::EMPTY, |all, b| all.union(*b))] }
+}
+
+/// Spheres that light can enter and in which nothing else is.
+pub(super) fn hollows(scene: &Scene) -> Hollows {
+    scene.geometry.hollows(|id| {
+        let material = &scene.materials[scene.objects[id.0 as usize].material.0 as usize];
+        matches!(material, Material::Null | Material::Dielectric { .. })
+    })
 }
 
 /// By medium: all that it fills, if that is a room.

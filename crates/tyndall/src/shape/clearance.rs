@@ -25,14 +25,24 @@ const SLACK: f64 = 1e-14;
 impl Geometry {
     /// A lower bound on the distance from `p` to the nearest surface [length], at most `cap`.
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
-        let nearest = dispatch!(self.level, simd => self.world_clearance(simd, p, cap));
+        let nearest = dispatch!(self.level, simd => self.world_clearance(simd, p, cap, |_| false));
         // Rounded down: the cast may have rounded up.
         if nearest < f64::from(cap) { (nearest as f32).next_down().max(0.0) } else { cap }
     }
 
+    /// Whether no surface but a sphere that stands in the world can be within `distance` of `p` [length].
+    pub(super) fn is_alone(&self, p: Vec3, distance: f32, sphere: (u32, u32)) -> bool {
+        let is_itself = |primitive: &Primitive| {
+            matches!(*primitive, Primitive::Sphere { object, instance, .. } if (object, instance) == sphere)
+        };
+        dispatch!(self.level, simd => self.world_clearance(simd, p, distance, is_itself)) >= f64::from(distance)
+    }
+
+    /// Of what stands in the world and is not `ignored`.
     #[inline(always)]
-    fn world_clearance<S: Simd>(&self, simd: S, p: Vec3, cap: f32) -> f64 {
+    fn world_clearance<S: Simd>(&self, simd: S, p: Vec3, cap: f32, ignored: impl Fn(&Primitive) -> bool) -> f64 {
         search(simd, &self.world, p.as_dvec3(), f64::from(cap), |primitive, cap| match *primitive {
+            _ if ignored(primitive) => f64::INFINITY,
             Primitive::Instance(index) => self.instance_clearance(simd, index, p, cap),
             Primitive::Shape { object, instance } if instance != NONE => {
                 let placement = &self.instances[instance as usize].placement;

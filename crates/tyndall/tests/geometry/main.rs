@@ -3,6 +3,7 @@
 mod agreement;
 mod bends;
 mod clearance;
+mod hollow;
 mod leaks;
 mod meshes;
 mod passage;
