@@ -256,7 +256,7 @@ impl Path {
     pub fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
         let Surroundings { depths: Some(depths), room, left: Left::Nothing, .. } = self.around else { return None };
         if !depths.is_roomy(room.reach(self.ray.origin, self.ray.dir))
-            || self.sampler.is_stratified(self.history.vertices)
+            || room.block().is_none() && self.sampler.is_stratified(self.history.vertices)
         {
             return None;
         }
