@@ -59,10 +59,10 @@ impl Path {
         Some(Event::Surface(scene.geometry.interaction(&way, &wall)))
     }
 
-    /// How far to look: as far as the flight, or to the end where it is likely to leave the medium.
+    /// How far to look: as far as the flight, or to the end where it leaves the medium for certain or is likely to.
     #[inline]
     fn reach(&self, scene: &Scene, flight: f32) -> f32 {
-        let leaves = self.inside.id().is_none_or(|id| flight > scene.deepest(id));
+        let leaves = self.inside.id().is_none_or(|id| flight > scene.deepest(id) || scene.room(id).is_some());
         if leaves { f32::INFINITY } else { flight + scene.rounding(&self.ray, flight) }
     }
 }
