@@ -143,7 +143,8 @@ impl Path {
         if let Some(outside) = outside {
             let pdf = probability * light.pdf_across(&reference, &goal, onward) / spread;
             let inside = self.inside.coefficients().map_or(Lanes::ONE, |c| c.transmittance(hit.t));
-            let weight = weights.light_sample([supposed * pdf, pdf], scatter_pdf * passes, inside * outside);
+            let found = inside * scene.reached(&beyond, outside) * (scatter_pdf * passes);
+            let weight = weights.light_sample([supposed * pdf, pdf], found, inside * outside);
             let mut history = *history;
             sink.turned(&mut history, vertex.turn(false, false), 1);
             let last = Turn::Surface { object: hit.object, crossed: true, kind: Kind::Specular };

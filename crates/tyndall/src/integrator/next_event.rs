@@ -6,9 +6,11 @@ use crate::{
     light::Reference,
     math::{Bounds, Ray, Vec2, Vec3},
     medium::{Inside, Within},
-    path::{Attempt, History, Path, PathWeights, Sight, Source, Turn, Vertex, aim::Aiming, event::Aimed, shadow},
+    path::{Attempt, History, Path, PathWeights, Sight, Source, Turn, Vertex, ahead::Seeker, event::Aimed, shadow},
     phase::Phase,
     scene::Scene,
+    shape::Interaction,
+    spectrum::Lanes,
     tally::Tally,
 };
 
@@ -19,7 +21,7 @@ pub(super) struct Lamps<'a, S> {
     pub(super) sink: &'a mut S,
 }
 
-impl<S: Sink> Aiming for Lamps<'_, S> {
+impl<S: Sink> Seeker for Lamps<'_, S> {
     #[inline]
     fn lamp(&mut self, path: &mut Path) -> Option<Bounds> {
         path.lamp(self.scene, self.settings)
@@ -28,6 +30,19 @@ impl<S: Sink> Aiming for Lamps<'_, S> {
     #[inline]
     fn aimed(&mut self, path: &Path, aimed: &Aimed, tally: &mut Tally) {
         path.sample_aimed(self.scene, aimed, self.sink, tally);
+    }
+
+    #[inline]
+    fn looks(&self, inside: &Inside) -> bool {
+        self.scene.looks_ahead(inside)
+    }
+
+    #[inline]
+    fn seen(&mut self, path: &Path, end: Option<&Interaction>, transmittance: Lanes, tally: &mut Tally) {
+        match end {
+            Some(surface) => path.find_emitter(self.scene, surface, transmittance, self.sink, tally),
+            None => path.find_environment(self.scene, transmittance, self.sink, tally),
+        }
     }
 }
 
@@ -94,8 +109,9 @@ impl Path {
             shadow::transmittance(scene, origin, sample.dir, &sample.target, (inside, within), wavelengths, tally);
         if let Some(transmittance) = arrives {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
+            let found = scatter_pdf * scene.reached(&inside, transmittance);
             let pdf = probability * sample.pdf;
-            let weight = weights.light_sample([supposed * pdf, pdf], scatter_pdf, transmittance);
+            let weight = weights.light_sample([supposed * pdf, pdf], found, transmittance);
             let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
             let source = if light.is_environment() { Source::Sky(id) } else { Source::Light(id) };
             sink.add(weight * (supposed / odds) * f * sample.li, history, Some(turn), source);

@@ -115,7 +115,9 @@ impl Path {
     ) -> Status {
         match event {
             Event::Escape => {
-                self.find_environment(scene, sink, tally);
+                if !self.foreseen {
+                    self.find_environment(scene, Lanes::ONE, sink, tally);
+                }
                 Status::Done
             }
             Event::Surface(mut hit) => {
@@ -130,7 +132,7 @@ impl Path {
                         return Status::Alive;
                     }
                     (Skin::Open, _) | (Skin::Written, Material::Null) => {
-                        self.find_emitter(scene, &hit, sink, tally);
+                        self.find_emitter(scene, &hit, Lanes::ONE, sink, tally);
                         self.cross(scene, &hit);
                         return Status::Alive;
                     }
@@ -142,7 +144,9 @@ impl Path {
                         (material.bsdf_between(eta, &(&hit).into(), &self.wavelengths), disperses)
                     }
                 };
-                self.find_emitter(scene, &hit, sink, tally);
+                if !self.foreseen {
+                    self.find_emitter(scene, &hit, Lanes::ONE, sink, tally);
+                }
                 tally.surface_vertices += 1;
                 let vertex = Vertex::met(scene, hit, bsdf, self.ray.dir, relief);
                 self.scatter(scene, settings, &vertex, (disperses, Attempt::CERTAIN), sink, tally)
@@ -172,8 +176,14 @@ impl Path {
         }
     }
 
-    /// Light from infinity.
-    fn find_environment(&self, scene: &Scene, sink: &mut impl Sink, tally: &mut Tally) {
+    /// Light from infinity, through `transmittance`.
+    pub(super) fn find_environment(
+        &self,
+        scene: &Scene,
+        transmittance: Lanes,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
         for id in &scene.lights.environments {
             let light = scene.lights.get(*id);
             let le = light.le_from_infinity(self.last_vertex.p, self.ray.dir, &self.wavelengths);
@@ -182,14 +192,21 @@ impl Path {
                     let straight = |from: &Reference| light.pdf_towards(from, self.ray.dir);
                     self.light_density(scene, *id, &Goal::Infinity(self.ray.dir), straight, tally)
                 });
-                sink.add(weight * le, &self.history, None, Source::Sky(*id));
+                sink.add(weight * transmittance * le, &self.history, None, Source::Sky(*id));
             }
         }
     }
 
-    /// Light from the surface that was hit.
+    /// Light from a surface ahead, through `transmittance`.
     #[inline]
-    fn find_emitter(&self, scene: &Scene, hit: &Interaction, sink: &mut impl Sink, tally: &mut Tally) {
+    pub(super) fn find_emitter(
+        &self,
+        scene: &Scene,
+        hit: &Interaction,
+        transmittance: Lanes,
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
         let Some((id, light)) = scene.light_at(hit) else { return };
         let le = light.le(hit.ng, -self.ray.dir, || hit.into(), &self.wavelengths);
         if !le.is_zero() {
@@ -197,7 +214,7 @@ impl Path {
                 let goal = Goal::Point { p: hit.p, ng: hit.ng };
                 self.light_density(scene, id, &goal, |from| light.pdf(from, hit.p, hit.ng), tally)
             });
-            sink.add(weight * le, &self.history, None, Source::Light(id));
+            sink.add(weight * transmittance * le, &self.history, None, Source::Light(id));
         }
     }
 

@@ -16,29 +16,7 @@
 //!
 //! Source: Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media", § 5.
 
-use super::{Path, event::Aimed};
-use crate::{
-    math::{Bounds, Ray},
-    tally::Tally,
-};
-
-/// Who is asked for lamps to aim at, and told of the collisions that are aimed at them.
-pub trait Aiming {
-    /// A lamp to aim at, where a flight begins.
-    fn lamp(&mut self, path: &mut Path) -> Option<Bounds>;
-
-    /// A collision that was aimed at it.
-    fn aimed(&mut self, path: &Path, aimed: &Aimed, tally: &mut Tally);
-}
-
-/// Who aims at nothing.
-impl Aiming for () {
-    fn lamp(&mut self, _: &mut Path) -> Option<Bounds> {
-        None
-    }
-
-    fn aimed(&mut self, _: &Path, _: &Aimed, _: &mut Tally) {}
-}
+use crate::math::{Bounds, Ray};
 
 /// A density of distances along a ray [1/length].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -163,7 +163,14 @@ impl Attempt {
 
 impl Default for Surroundings {
     fn default() -> Self {
-        Self { depths: None, asked: false, room: Room::NONE, behind: Behind::default(), hollow: None, left: Left::Nothing }
+        Self {
+            depths: None,
+            asked: false,
+            room: Room::NONE,
+            behind: Behind::default(),
+            hollow: None,
+            left: Left::Nothing,
+        }
     }
 }
 

@@ -1,9 +1,6 @@
 //! What happens next to a path: free flight first, ray second.
 
-use super::{
-    Path, PathWeights,
-    aim::{Aim, Aiming},
-};
+use super::{Path, PathWeights, ahead::Seeker, aim::Aim};
 use crate::{
     math::{Bounds, Vec3, fast},
     medium::{Inside, MediumId, bodies::Part},
@@ -61,34 +58,42 @@ impl Path {
         self.next_event_past(scene, &mut (), tally)
     }
 
-    /// The same past a lamp, if there is one, at which another collision is aimed.
+    /// The same, with what else is to be looked for along the way.
     #[inline]
-    pub fn next_event_past<'s>(&mut self, scene: &'s Scene, aiming: &mut impl Aiming, tally: &mut Tally) -> Event<'s> {
+    pub fn next_event_past<'s>(&mut self, scene: &'s Scene, seeker: &mut impl Seeker, tally: &mut Tally) -> Event<'s> {
         if let Some(collision) = self.unfinished_collision(scene) {
             return collision;
         }
-        let (flight, lamp) = self.begin_flight(aiming);
+        let (flight, lamp) = self.begin_flight(seeker);
         if self.stays_clear(flight) {
             return self.arrive(scene, None, flight, None, tally);
         }
         tally.rays += 1;
-        if lamp.is_none() {
+        // Where surfaces are open, [`Self::pass_open`] has looked, or nobody can.
+        self.foreseen = false;
+        let looks = !scene.has_null_surfaces() && seeker.looks(&self.inside);
+        if lamp.is_none() && !looks {
             let hit = self.around.first_surface(scene, &self.ray, flight);
             return self.arrive(scene, hit, flight, None, tally);
         }
         let hit = self.around.first_surface(scene, &self.ray, f32::INFINITY);
-        let aim = self.aim(scene, lamp, hit.map_or(f32::INFINITY, |hit| hit.t), aiming, tally);
+        let end = hit.map_or(f32::INFINITY, |hit| hit.t);
+        if looks {
+            let transmittance = self.inside.coefficients().map(|c| c.transmittance(end));
+            self.foresee(scene, hit, || transmittance, seeker, tally);
+        }
+        let aim = self.aim(scene, lamp, end, seeker, tally);
         let hit = hit.filter(|hit| hit.t < flight + scene.rounding(&self.ray, flight));
         self.arrive(scene, hit, flight, aim, tally)
     }
 
     /// A flight that was left under way; or another, and a lamp to aim at along it [length].
     #[inline]
-    pub(super) fn begin_flight(&mut self, aiming: &mut impl Aiming) -> (f32, Option<Bounds>) {
+    pub(super) fn begin_flight(&mut self, seeker: &mut impl Seeker) -> (f32, Option<Bounds>) {
         if let Some(flight) = self.unfinished_flight() {
             return (flight, None);
         }
-        let lamp = aiming.lamp(self);
+        let lamp = seeker.lamp(self);
         (self.sample_flight(), lamp)
     }
 
@@ -99,12 +104,12 @@ impl Path {
         scene: &Scene,
         lamp: Option<Bounds>,
         end: f32,
-        aiming: &mut impl Aiming,
+        seeker: &mut impl Seeker,
         tally: &mut Tally,
     ) -> Option<Aim> {
         let aim = Aim::new(&self.ray, end, &lamp?)?;
         if let Some(aimed) = self.collide_aimed(scene, &aim) {
-            aiming.aimed(self, &aimed, tally);
+            seeker.aimed(self, &aimed, tally);
         }
         Some(aim)
     }

@@ -1,5 +1,6 @@
 //! A path as a value: where it is, what it weighs, what it has been through.
 
+pub mod ahead;
 pub mod aim;
 pub mod deep;
 pub mod event;
@@ -59,6 +60,8 @@ pub struct Path {
     pub last_vertex: Reference,
     /// How it was sampled.
     pub sight: Sight,
+    /// Whether the light at the end of its way has been found: see [`ahead`].
+    pub foreseen: bool,
 }
 
 impl Path {
@@ -79,6 +82,7 @@ impl Path {
             stage: Stage::default(),
             last_vertex: Reference { p: ray.origin, normal: None },
             sight: Sight::Straight,
+            foreseen: false,
         }
     }
 }

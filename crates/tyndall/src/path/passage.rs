@@ -4,7 +4,7 @@
 //! The same flights are drawn in the same order as by stopping at each, with the same collisions aimed at lamps, and where the
 //! search has not looked far enough another goes on.
 
-use super::{Event, Path, aim::Aiming};
+use super::{Event, Path, ahead::Seeker, shadow};
 use crate::{scene::Scene, shape::Passed, tally::Tally};
 
 impl Path {
@@ -14,23 +14,33 @@ impl Path {
     pub fn pass_open<'s>(
         &mut self,
         scene: &'s Scene,
-        aiming: &mut impl Aiming,
+        seeker: &mut impl Seeker,
         tally: &mut Tally,
     ) -> Option<Event<'s>> {
         let open = scene.open_to_paths()?;
         if self.collision_is_due() {
             return None;
         }
-        let (mut flight, mut lamp) = self.begin_flight(aiming);
+        let (mut flight, mut lamp) = self.begin_flight(seeker);
         if self.stays_clear(flight) {
             return Some(self.arrive(scene, None, flight, None, tally));
         }
         let way = self.ray;
-        let reach = if lamp.is_some() { f32::INFINITY } else { self.reach(scene, flight) };
+        self.foreseen = false;
+        let looks = seeker.looks(&self.inside);
+        let reach = if looks || lamp.is_some() { f32::INFINITY } else { self.reach(scene, flight) };
         tally.rays += 1;
         let mut passed = Passed::default();
         let wall = scene.geometry.intersect_but(&way, reach, open, &mut passed);
         let end = wall.map_or(reach, |wall| wall.t);
+        if looks && !passed.are_too_many() {
+            let (inside, wavelengths) = (self.inside, self.wavelengths);
+            let transmittance = || {
+                let surfaces = passed.surfaces(&scene.geometry, &way)?.take_while(|(t, _)| *t < end);
+                shadow::through(scene, way.dir, end, surfaces, inside, &wavelengths)
+            };
+            self.foresee(scene, wall, transmittance, seeker, tally);
+        }
         let Some(mut surfaces) = passed.surfaces(&scene.geometry, &way) else {
             self.leave_flight(flight);
             return None;
@@ -41,7 +51,7 @@ impl Path {
             let to = boundary.map_or(end, |(t, _)| t);
             // Only a way that is known to its end can be aimed along.
             let is_known = boundary.is_some() || wall.is_some() || end == f32::INFINITY;
-            let aim = self.aim(scene, lamp.filter(|_| is_known), to - from, aiming, tally);
+            let aim = self.aim(scene, lamp.filter(|_| is_known), to - from, seeker, tally);
             if to - from >= flight + scene.rounding(&self.ray, flight) {
                 return Some(self.arrive(scene, None, flight, aim, tally));
             }
@@ -49,7 +59,7 @@ impl Path {
             self.pass(to - from);
             self.cross(scene, &surface);
             from = to;
-            (flight, lamp) = self.begin_flight(aiming);
+            (flight, lamp) = self.begin_flight(seeker);
         }
         let Some(wall) = wall else {
             self.leave_flight(flight);

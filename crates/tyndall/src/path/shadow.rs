@@ -83,7 +83,7 @@ pub fn transmittance(
 }
 
 /// The transmittance of a segment of length `t_max` along `dir` that meets these surfaces without a material, at these distances.
-fn through(
+pub(super) fn through(
     scene: &Scene,
     dir: Vec3,
     t_max: f32,

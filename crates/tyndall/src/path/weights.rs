@@ -38,12 +38,11 @@ impl PathWeights {
     }
 
     /// The weight of a light that was sampled with density `light_pdf` over solid angle (`aim_pdf` where the collision had been
-    /// aimed at a lamp), and that scattering would have found with `scatter_pdf`, through `transmittance`. For a Dirac light scattering finds nothing: pass 0 and 1.
+    /// aimed at a lamp), and that scattering would have found with `scatter_pdf` in each lane, through `transmittance`. For a Dirac
+    /// light scattering finds nothing: pass 0 and 1.
     #[inline]
-    pub fn light_sample(&self, [light_pdf, aim_pdf]: [f32; 2], scatter_pdf: f32, transmittance: Lanes) -> Lanes {
-        // Scattering reaches the light if its free flight does, with probability `transmittance` in each lane.
-        let density =
-            (self.r_u * (transmittance * scatter_pdf + Lanes::splat(light_pdf)) + self.r_aim * aim_pdf).mean();
+    pub fn light_sample(&self, [light_pdf, aim_pdf]: [f32; 2], scatter_pdf: Lanes, transmittance: Lanes) -> Lanes {
+        let density = (self.r_u * (scatter_pdf + Lanes::splat(light_pdf)) + self.r_aim * aim_pdf).mean();
         self.beta * transmittance / density
     }
 

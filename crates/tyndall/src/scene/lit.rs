@@ -6,7 +6,7 @@ use crate::{
     light::{Light, LightId, LightTable},
     material::{Index, Material},
     math::Bounds,
-    medium::{Body, Coefficients, MediumId},
+    medium::{Body, Coefficients, Inside, MediumId},
     shape::{Geometry, ObjectId, Shape},
     surface::may_be_open,
 };
@@ -26,6 +26,8 @@ pub enum Lit {
 const SMALL_LAMP: f32 = 0.2;
 /// The depth of a medium from which on walks serve it better than collisions aimed at its lamps \[mean free paths\].
 const THIN: f32 = 8.0;
+/// The depth of a medium up to which most flights leave it \[mean free paths\].
+const SHALLOW: f32 = 1.0;
 
 impl Scene {
     /// The whole surface of a medium, if it is one ball at which light samples may bend.
@@ -59,6 +61,23 @@ impl Scene {
         let bounds = self.lights.get(lamp).bounds()?;
         let is_small = bounds.extent().length() < SMALL_LAMP * self.deepest(medium);
         (is_small && overlap(&self.facts.extent[medium.0 as usize], &bounds)).then_some(bounds)
+    }
+
+    /// Whether paths see through a medium: so few flights end in it that walks there are worth nothing, or collisions are aimed at a
+    /// lamp. The same for whatever lane is the hero, as all weights of multiple importance sampling must be.
+    #[inline]
+    pub fn is_clear(&self, medium: MediumId, coefficients: &Coefficients) -> bool {
+        coefficients.sigma_t.mean() * self.deepest(medium) < SHALLOW || self.aims(medium, coefficients)
+    }
+
+    /// Whether light straight ahead of a path is looked for beyond where its flight ends: see [`crate::path::ahead`].
+    #[inline]
+    pub fn looks_ahead(&self, inside: &Inside) -> bool {
+        match inside {
+            Inside::Vacuum => self.open_to_paths().is_some(),
+            Inside::Medium { id, coefficients } => self.open().is_some() && self.is_clear(*id, coefficients),
+            Inside::Mixture { .. } => false,
+        }
     }
 
     /// Whether collisions in a medium are to be aimed at lamps: where a small one is in it and it is thin. The same for

@@ -32,9 +32,7 @@ impl Geometry {
 
     /// Whether no surface but a sphere that stands in the world can be within `distance` of `p` [length].
     pub(super) fn is_alone(&self, p: Vec3, distance: f32, sphere: (u32, u32)) -> bool {
-        let is_itself = |primitive: &Primitive| {
-            matches!(*primitive, Primitive::Sphere { object, instance, .. } if (object, instance) == sphere)
-        };
+        let is_itself = |primitive: &Primitive| matches!(*primitive, Primitive::Sphere { object, instance, .. } if (object, instance) == sphere);
         dispatch!(self.level, simd => self.world_clearance(simd, p, distance, is_itself)) >= f64::from(distance)
     }
 

@@ -29,10 +29,16 @@ impl Default for Passed {
 }
 
 impl Passed {
+    /// Whether there were more than can be told.
+    #[inline]
+    pub fn are_too_many(&self) -> bool {
+        self.len > MOST
+    }
+
     /// In the order of their distances; `None` if there were too many. Where faces meet, an edge can be hit on both.
     #[inline]
     pub fn in_order(&mut self) -> Option<impl Iterator<Item = Hit>> {
-        if self.len > MOST {
+        if self.are_too_many() {
             return None;
         }
         let hits = if self.many.is_empty() { &mut self.few[..self.len] } else { &mut self.many[..] };

@@ -89,14 +89,12 @@ pub struct Settled {
 const LOG_OF_NOTHING: f32 = -1e4;
 
 impl Depths {
-    /// Of a medium, unless walks in it are worth nothing: it glows (each collision counts), nothing scatters, no clearance
-    /// in it reaches far, or collisions are aimed at a lamp.
+    /// Of a medium, unless walks in it are worth nothing: it glows (each collision counts), nothing scatters, or it is clear.
     pub fn of(scene: &Scene, id: MediumId, coefficients: &Coefficients, hero: usize) -> Option<Self> {
         let Coefficients { sigma_t, sigma_s, source } = *coefficients;
         let extinction = sigma_t.lane(hero);
         let (sigma_mean, scatters) = (sigma_t.mean(), !sigma_s.is_zero() && sigma_t.min_lane() > 0.0);
-        let is_shallow = scene.deepest(id) * sigma_mean < 2.0 * ROOM;
-        if !scatters || !source.is_zero() || is_shallow || scene.aims(id, coefficients) {
+        if !scatters || !source.is_zero() || scene.is_clear(id, coefficients) {
             return None;
         }
         let log = |v: f32| if v > 0.0 { v.ln() } else { LOG_OF_NOTHING };
