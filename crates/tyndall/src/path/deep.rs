@@ -262,6 +262,7 @@ impl Path {
     #[inline]
     pub fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
         let Surroundings { depths: Some(depths), room, left: Left::Nothing, .. } = self.around else { return None };
+        // In a block a collision of a walk costs so little that stratified numbers gain less than they cost.
         if !depths.is_roomy(room.reach(self.ray.origin, self.ray.dir))
             || room.block().is_none() && self.sampler.is_stratified(self.history.vertices)
         {

@@ -64,11 +64,6 @@ impl Passed {
 
     #[inline(always)]
     fn note(&mut self, hit: Nearest) {
-        // A packet that is not full repeats its last triangle.
-        let last = self.many.last().or_else(|| self.few.get(self.len.checked_sub(1)?));
-        if last.is_some_and(|last| last.is_again(&hit)) {
-            return;
-        }
         match self.few.get_mut(self.len) {
             Some(place) => *place = hit,
             None => self.note_many(hit),
@@ -140,11 +135,6 @@ impl<M: Met> Met for Placed<'_, M> {
 }
 
 impl Nearest {
-    #[inline(always)]
-    fn is_again(&self, other: &Self) -> bool {
-        (self.prim, self.object, self.instance) == (other.prim, other.object, other.instance)
-    }
-
     #[inline]
     pub(super) fn hit(&self) -> Hit {
         let Self { t, object, prim, instance, uv } = *self;

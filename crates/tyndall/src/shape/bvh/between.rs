@@ -26,8 +26,8 @@ pub(in crate::shape) fn between(
             Content::Packets { first, count } => {
                 let shear = Shear::new(ray);
                 for packet in &tree.packets[first..first + count] {
-                    for (lane, id) in packet.ids.iter().enumerate() {
-                        let Some(hit) = shear.resolve(packet, lane) else { continue };
+                    for lane in packet.filled() {
+                        let (id, Some(hit)) = (packet.ids[lane], shear.resolve(packet, lane)) else { continue };
                         if hit.t > 0.0 && hit.t < f64::from(t_max) {
                             triangle((hit.t as f32, id.object, id.prim, hit.uv));
                         }

@@ -262,7 +262,8 @@ fn write_packets(tree: &mut Tree, triangles: &[(TriangleId, [Vec3; 3])]) -> Chil
     for chunk in triangles.chunks(8) {
         let lane = |i: usize| chunk[i.min(chunk.len() - 1)];
         let vertex = std::array::from_fn(|v| std::array::from_fn(|axis| std::array::from_fn(|i| lane(i).1[v][axis])));
-        tree.packets.push(Packet { vertex, ids: std::array::from_fn(|i| lane(i).0) });
+        let filled = 0xff >> (8 - chunk.len());
+        tree.packets.push(Packet { vertex, ids: std::array::from_fn(|i| lane(i).0), filled });
     }
     child
 }
@@ -296,9 +297,7 @@ mod tests {
             }
             Content::Packets { first, count } => {
                 for packet in &tree.packets[first..first + count] {
-                    let mut ids: Vec<u32> = packet.ids.iter().map(|id| id.prim).collect();
-                    ids.dedup();
-                    found.extend(ids);
+                    found.extend(packet.filled().map(|lane| packet.ids[lane].prim));
                     for (vertex, axis) in (0..9).map(|i| (i / 3, i % 3)) {
                         let [least, greatest] = within[axis];
                         assert!(packet.vertex[vertex][axis].iter().all(|x| (least..=greatest).contains(x)));

@@ -122,9 +122,17 @@ pub(super) struct Packet {
     /// `vertex[i][axis][lane]` [length].
     pub(super) vertex: [[[f32; 8]; 3]; 3],
     pub(super) ids: [TriangleId; 8],
+    /// The lanes that repeat no other, a bit each.
+    pub(super) filled: u32,
 }
 
 impl Packet {
+    /// The lanes that repeat no other.
+    pub(super) fn filled(&self) -> impl Iterator<Item = usize> {
+        let filled = self.filled;
+        (0..8).filter(move |lane| filled >> lane & 1 == 1)
+    }
+
     /// One triangle of the packet [length].
     #[inline(always)]
     pub(super) fn triangle(&self, lane: usize) -> [Vec3; 3] {

@@ -58,7 +58,7 @@ impl Shear {
         let zero = f32x8::splat(simd, 0.0);
         let same_sign = u.min(v).min(w).simd_ge(zero) | u.max(v).max(w).simd_le(zero);
         let in_range = az.max(bz).max(cz).simd_gt(zero) & az.min(bz).min(cz).simd_lt(f32x8::splat(simd, t_max));
-        (same_sign & in_range).to_bitmask() as u32
+        (same_sign & in_range).to_bitmask() as u32 & packet.filled
     }
 
     /// Sheared x and y, and the depth along the ray.
