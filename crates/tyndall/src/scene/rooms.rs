@@ -135,10 +135,11 @@ pub(super) fn bare_lights(lights: &LightTable) -> Vec<Bounds> {
 
 /// Spheres that light can enter and in which nothing else is.
 pub(super) fn hollows(scene: &Scene) -> Hollows {
-    scene.geometry.hollows(|id| {
-        let material = &scene.materials[scene.objects[id.0 as usize].material.0 as usize];
-        matches!(material, Material::Null | Material::Dielectric { .. })
-    })
+    let lets_light_in = |object: &Object| {
+        matches!(scene.materials[object.material.0 as usize], Material::Null | Material::Dielectric { .. })
+    };
+    // Where a scene has faults, shapes may be more than objects.
+    scene.geometry.hollows(|id| scene.objects.get(id.0 as usize).is_some_and(lets_light_in))
 }
 
 /// By medium: all that it fills, if that is a room.
