@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Measured, World, assert_mean, diffuse, grey, measure, medium};
+use common::{World, assert_agree, assert_mean, diffuse, grey, measure, medium};
 use tyndall::{
     integrator::{Deep, VolPath, walk::Depths},
     light::{Light, PointLight},
@@ -77,16 +77,6 @@ fn three_lamps(color: ColorMode, fog: Homogeneous) -> Scene {
     let position = Vec3::new(0.4, 0.3, 0.2);
     world.lights.push(Light::Point(PointLight { position, intensity: grey(0.2), luminance: 0.2 }));
     world.scene()
-}
-
-/// As [`Measured`] is for means: |z| below 4.5.
-fn assert_agree(what: &str, [a, b]: [Measured; 2], precision: f64) {
-    for c in 0..3 {
-        let error = a.standard_error[c].hypot(b.standard_error[c]);
-        let z = (a.mean[c] - b.mean[c]) / error;
-        assert!(z.abs() < 4.5, "{what}, channel {c}: {:.5} and {:.5}, z = {z:.1}", a.mean[c], b.mean[c]);
-        assert!(error < precision * a.mean[c], "{what}, channel {c}: {error:.2e} of {:.5}", a.mean[c]);
-    }
 }
 
 /// All three techniques and all orders, in media whose lanes differ.

@@ -1,5 +1,6 @@
 //! Elementary functions that scalar and SIMD code share: small polynomials without fused operations, so that every
-//! instruction set gives the same bits. Tested against `f64`.
+//! instruction set gives the same bits. Long ones are summed in pairs (Estrin 1960), which need not wait for each other. Tested
+//! against `f64`.
 
 /// Natural logarithm of `x` in `(0, 1]` or any positive normal number; relative error below 3·10⁻⁷ away from 1,
 /// absolute error below 1·10⁻⁷ near 1.
@@ -79,7 +80,6 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     let (least, greatest) = (ax.min(ay), ax.max(ay));
     let t = if greatest > 0.0 { least / greatest } else { 0.0 };
     let t2 = t * t;
-    // In pairs, after Estrin 1960: their sums need not wait for each other.
     let t4 = t2 * t2;
     let low = (-3.333_314_528e-1 + 1.999_355_085e-1 * t2) + (-1.420_889_944e-1 + 1.065_626_393e-1 * t2) * t4;
     let high = (-7.528_964_00e-2 + 4.290_961_38e-2 * t2) + (-1.616_573_67e-2 + 2.866_225_7e-3 * t2) * t4;

@@ -18,7 +18,7 @@ use crate::{
     tally::Tally,
 };
 
-/// What a path knows of its surroundings in a medium.
+/// What a path knows of its surroundings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surroundings {
     /// The medium, if walks in it are worth while; `None` also while nobody has asked.
@@ -262,7 +262,7 @@ impl Path {
     #[inline]
     pub fn begin_walk(&self, settings: &VolPath) -> Option<Walker> {
         let Surroundings { depths: Some(depths), room, left: Left::Nothing, .. } = self.around else { return None };
-        // In a block a collision of a walk costs so little that stratified numbers gain less than they cost.
+        // In a block walks are so cheap that stratified numbers do not pay for the flights that they want traced.
         if !depths.is_roomy(room.reach(self.ray.origin, self.ray.dir))
             || room.block().is_none() && self.sampler.is_stratified(self.history.vertices)
         {

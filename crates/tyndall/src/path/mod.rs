@@ -42,7 +42,7 @@ pub struct Path {
     pub within: Within,
     /// Those that it is in once it has passed the surface that it is at.
     pub beyond: Within,
-    /// What it knows of its surroundings in a medium.
+    /// What it knows of its surroundings.
     pub around: Surroundings,
     /// What it would carry.
     pub weights: PathWeights,

@@ -10,8 +10,8 @@ use super::{
 };
 use crate::math::{Ray, Vec2, Vec3};
 
-/// How much nearer to the centre than the sphere anything else may come, and be taken to be inside: a hundred times what rounding
-/// can do to a distance \[1\].
+/// How far outside of a sphere, in its radii, other things still count as inside: a hundred times what rounding can do to a distance
+/// \[1\].
 const BESIDE: f32 = 1e-5;
 
 /// A sphere in the world with nothing else inside.

@@ -323,3 +323,14 @@ pub(crate) fn assert_mean(what: &str, m: &Measured, expected: [f64; 3], precisio
         );
     }
 }
+
+/// The same for two measurements, of each other.
+#[track_caller]
+pub(crate) fn assert_agree(what: &str, [a, b]: [Measured; 2], precision: f64) {
+    for c in 0..3 {
+        let error = a.standard_error[c].hypot(b.standard_error[c]);
+        let z = (a.mean[c] - b.mean[c]) / error;
+        assert!(z.abs() < 4.5, "{what}, channel {c}: {:.5} and {:.5}, z = {z:.1}", a.mean[c], b.mean[c]);
+        assert!(error < precision * a.mean[c], "{what}, channel {c}: {error:.2e} of {:.5}", a.mean[c]);
+    }
+}
