@@ -89,7 +89,10 @@ impl<'a> FirstHit<'a> {
             Feature::ShadingNormal(space, facing) => {
                 self.normal(self.shading_normal(hit, sampler), space, facing, to_world)
             }
-            Feature::Uv => [hit.uv.x, hit.uv.y, 0.0],
+            Feature::Uv => {
+                let [u, v] = hit.uv.get().to_array();
+                [u, v, 0.0]
+            }
             Feature::DpDu => hit.dpdu.to_array(),
             Feature::DzDxy(space) => {
                 let z = match space {

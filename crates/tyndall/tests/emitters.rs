@@ -69,7 +69,7 @@ fn curved_patches_follow_their_density() {
                 let Target::Surface { p, ng, .. } = sample.target else { return None };
                 let ray = Ray::new(p + ng * 1e-3, -ng);
                 let hit = geometry.intersect(&ray, f32::INFINITY)?;
-                Some(geometry.interaction(&ray, &hit).uv.as_dvec2().to_array())
+                Some(geometry.interaction(&ray, &hit).uv.get().as_dvec2().to_array())
             };
             family.check(&format!("{name}: chi-square"), Grid::SQUARE.test(N, place, density));
         }

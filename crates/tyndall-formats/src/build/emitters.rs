@@ -227,7 +227,8 @@ fn mean_luminance(texture: &Texture, size: [u32; 2]) -> f64 {
     let middle = |i: u32, n: u32| (i as f32 + 0.5) / n as f32;
     let places = (0..rows).flat_map(|j| (0..columns).map(move |i| Vec2::new(middle(i, columns), middle(j, rows))));
     let luminance = |uv: Vec2| {
-        let lanes = texture.eval(&TexturePoint { p: Vec3::ZERO, uv, n: Vec3::Z, part: None }, &Wavelengths::Rgb);
+        let lanes =
+            texture.eval(&TexturePoint { p: Vec3::ZERO, uv: uv.into(), n: Vec3::Z, part: None }, &Wavelengths::Rgb);
         f64::from(srgb::luminance([0, 1, 2].map(|lane| lanes.lane(lane))))
     };
     places.map(luminance).sum::<f64>() / (f64::from(columns) * f64::from(rows))

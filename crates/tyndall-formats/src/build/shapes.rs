@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 use tyndall::{
     light::{EmitterShape, Light},
     lpe::Names,
-    math::{Transform, Vec3},
+    math::{Transform, Vec2, Vec3},
     medium::{self, BodyId, Member},
     scene::{Emission, Object},
     shape::{Cylinder, Disk, Geometry, GeometryBuilder, GroupId, Mesh, ObjectId, ShapeError, Sphere},
@@ -318,7 +318,7 @@ impl<'a> Builder<'a> {
     ) -> Option<Result<TriangleMesh, MeshError>> {
         let texture = self.texture(&displacement.height, Measure::Number)?;
         // As in pbrt, textures of space see the points of the mesh's own space, and no normal.
-        let height = |p, uv| texture.scalar(&TexturePoint { p, uv, n: Vec3::ZERO, part: None });
+        let height = |p, uv: Vec2| texture.scalar(&TexturePoint { p, uv: uv.into(), n: Vec3::ZERO, part: None });
         let length = |a: Vec3, b: Vec3| {
             let along = transform.matrix.as_dmat4().transform_vector3(b.as_dvec3() - a.as_dvec3());
             along.length()

@@ -59,7 +59,7 @@ impl Pattern {
                 surface.parameters(&Ray::new(p + ng * height, -ng))
             }
         };
-        TexturePoint { p, uv, n: ng, part: self.part }
+        TexturePoint { p, uv: uv.into(), n: ng, part: self.part }
     }
 
     /// The mean over a surface, by `n²` points of equal areas, of the luminance of `light` under the pattern.

@@ -39,7 +39,7 @@ impl Slide {
     #[inline]
     pub fn filter(&self, uv: Vec2, wavelengths: &Wavelengths) -> Lanes {
         let [p, n] = [self.to_world.matrix.w_axis, self.to_world.matrix.z_axis].map(Vec4::truncate);
-        self.texture.eval(&TexturePoint { p, uv, n, part: None }, wavelengths)
+        self.texture.eval(&TexturePoint { p, uv: uv.into(), n, part: None }, wavelengths)
     }
 
     /// Area of the picture in the plane z = 1 [1].

@@ -65,7 +65,7 @@ impl HairTextures {
             }
         };
         let alpha = self.alpha.scalar(at).to_radians();
-        let h = 2.0 * at.uv.y - 1.0;
+        let h = 2.0 * at.uv.get().y - 1.0;
         Bsdf::Hair(Hair::new(h, self.eta.scalar(at), sigma_a, [self.beta_m.scalar(at), beta_n], alpha))
     }
 }

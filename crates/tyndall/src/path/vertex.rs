@@ -67,23 +67,24 @@ impl<'s> Vertex<'s> {
     /// no light through has no such trouble, and the shading normal alone decides, as in pbrt and in Mitsuba.
     #[inline]
     pub fn surface(hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3) -> Self {
-        let frame = hit.shading_frame();
-        let wo = frame.to_local(-dir);
-        if may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
-            return Self::Surface { hit, frame, bsdf, wo, shadowing: None };
+        // A mirror is the same all round.
+        let mut frame = if bsdf.is_specular() { Frame::around(hit.ns) } else { hit.shading_frame() };
+        let mut wo = frame.to_local(-dir);
+        if !may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
+            frame = Frame::around(hit.ng);
+            wo = frame.to_local(-dir);
         }
-        let frame = Frame::around(hit.ng);
-        Self::Surface { hit, frame, bsdf, wo: frame.to_local(-dir), shadowing: None }
+        Self::Surface { hit, frame, bsdf, wo, shadowing: None }
     }
 
     /// The same on the relief of an embossed material, if there is one.
     #[inline]
     pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3, relief: Option<MaterialId>) -> Self {
-        let even = Self::surface(hit, bsdf, dir);
-        match relief.and_then(|id| scene.relief(id)) {
-            Some(relief) => even.embossed(scene, dir, relief),
-            None => even,
+        let mut vertex = Self::surface(hit, bsdf, dir);
+        if let Some(relief) = relief.and_then(|id| scene.relief(id)) {
+            vertex = vertex.embossed(scene, dir, relief);
         }
+        vertex
     }
 
     #[inline(never)]

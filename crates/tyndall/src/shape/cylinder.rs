@@ -114,7 +114,7 @@ impl Cylinder {
             error: size.iter().sum::<f64>() * (-45f64).exp2(),
             ng,
             ns: ng,
-            uv: Vec2::new((turns(round) / self.turn.turns()) as f32, local.z as f32),
+            uv: Vec2::new((turns(round) / self.turn.turns()) as f32, local.z as f32).into(),
             dpdu: matrix * round.perp().extend(0.0) * self.turn.radians(),
         }
     }
@@ -176,11 +176,16 @@ mod tests {
             let at =
                 |p: Vec3| cylinder.point(&Ray::new(p * Vec3::new(2.0, 2.0, 1.0), -p * Vec3::new(1.0, 1.0, 0.0)), 1.0);
             let here = at(Vec3::new(0.0, 2.0, 2.0));
-            assert!((here.uv - Vec2::new(u, 0.5)).length() < 1e-6, "{}", here.uv);
+            assert!((here.uv.get() - Vec2::new(u, 0.5)).length() < 1e-6, "{}", here.uv.get());
             assert!((here.ng.normalize() - DVec3::Y).length() < 1e-6);
             let step = 1e-4;
             let on = at((here.p + here.dpdu * step).as_vec3());
-            assert!((on.uv - here.uv - Vec2::new(step as f32, 0.0)).length() < 1e-6, "{} {}", here.uv, on.uv);
+            assert!(
+                (on.uv.get() - here.uv.get() - Vec2::new(step as f32, 0.0)).length() < 1e-6,
+                "{} {}",
+                here.uv.get(),
+                on.uv.get()
+            );
         }
     }
 

@@ -39,10 +39,10 @@ impl Geometry {
             Shape::Sphere(sphere) => sphere.derivatives(p),
             Shape::Disk(disk) => disk.derivatives(p),
             Shape::Cylinder(cylinder) => cylinder.derivatives(p),
-            Shape::Patch(patch) => patch.derivatives(at.uv),
+            Shape::Patch(patch) => patch.derivatives(at.uv.get()),
             Shape::Curves(curves) => {
                 let n = place.map_or(n, |map| map.matrix3.transpose() * n);
-                curves.derivatives(at.prim, n, at.uv.x)
+                curves.derivatives(at.prim, n, at.uv.get().x)
             }
         };
         let Local { dp, dn } = place.map_or(local, |map| local.placed(&map, n));
@@ -174,7 +174,7 @@ mod tests {
                     else {
                         continue;
                     };
-                    let duv = c.uv - b.uv;
+                    let duv = c.uv.get() - b.uv.get();
                     // Grazing rays, and the seam of u, are left out.
                     if (c.p - b.p).length() > 0.06 || duv.length() > 0.03 {
                         continue;

@@ -173,7 +173,7 @@ impl Disk {
             error: (centre.abs().max_element() + a.abs().max_element() + b.abs().max_element()) * (-45f64).exp2(),
             ng: n,
             ns: n,
-            uv: Vec2::new(uv[0] as f32, uv[1] as f32),
+            uv: Vec2::new(uv[0] as f32, uv[1] as f32).into(),
             dpdu,
         }
     }
@@ -193,11 +193,16 @@ mod tests {
         {
             let disk = Disk::new(0.0, 1.0, 0.0).mapped(mapping);
             let at = uv_at(&disk, place);
-            assert!((at.uv - expected).length() < 1e-6, "{mapping:?}: {}", at.uv);
+            assert!((at.uv.get() - expected).length() < 1e-6, "{mapping:?}: {}", at.uv.get());
             // A small step along ∂p/∂u changes u by the step, and v not.
             let step = 1e-3;
             let on = uv_at(&disk, place + at.dpdu.as_vec3() * step);
-            assert!((on.uv - at.uv - Vec2::new(step, 0.0)).length() < 1e-4, "{mapping:?}: {} {}", at.uv, on.uv);
+            assert!(
+                (on.uv.get() - at.uv.get() - Vec2::new(step, 0.0)).length() < 1e-4,
+                "{mapping:?}: {} {}",
+                at.uv.get(),
+                on.uv.get()
+            );
         }
     }
 }

@@ -85,7 +85,7 @@ impl Shape {
 
     /// The surface parameters where a ray meets a shape that is not a mesh; (0, 0) where it does not.
     pub(crate) fn parameters(&self, ray: &Ray) -> Vec2 {
-        self.intersect(ray, f32::INFINITY).map_or(Vec2::ZERO, |(t, uv)| self.point(ray, t, 0, uv).uv)
+        self.intersect(ray, f32::INFINITY).map_or(Vec2::ZERO, |(t, uv)| self.point(ray, t, 0, uv).uv.get())
     }
 
     fn point(&self, ray: &Ray, t: f32, prim: u32, uv: Vec2) -> Point {

@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 
-use super::ObjectId;
-use crate::math::{Frame, Ray, Vec2, Vec3, rounding::gamma};
+use super::{ObjectId, Uv};
+use crate::math::{Frame, Ray, Vec3, rounding::gamma};
 
 /// A point on a surface in world space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Interaction {
     /// Shading normal: unit, on the side of `ng`.
     pub ns: Vec3,
     /// Surface parameters.
-    pub uv: Vec2,
+    pub uv: Uv,
     /// Derivative of the point by `u` [length].
     pub dpdu: Vec3,
     /// The object that was hit.
@@ -108,7 +108,7 @@ pub(super) struct Point {
     /// Normals, not necessarily unit.
     pub(super) ng: DVec3,
     pub(super) ns: DVec3,
-    pub(super) uv: Vec2,
+    pub(super) uv: Uv,
     pub(super) dpdu: DVec3,
 }
 

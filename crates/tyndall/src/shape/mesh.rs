@@ -92,7 +92,7 @@ impl Mesh {
             error: longest * (-32f64).exp2(),
             ng,
             ns,
-            uv: uv0 * (1.0 - weights.x - weights.y) + uv1 * weights.x + uv2 * weights.y,
+            uv: (uv0 * (1.0 - weights.x - weights.y) + uv1 * weights.x + uv2 * weights.y).into(),
             dpdu: derivative_by_u([e1, e2], uv1 - uv0, uv2 - uv0).unwrap_or_else(|| ng.any_orthogonal_vector()),
         }
     }

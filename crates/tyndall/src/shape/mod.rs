@@ -31,6 +31,7 @@ mod patch;
 mod room;
 mod seams;
 mod sphere;
+mod uv;
 
 pub use builder::{GeometryBuilder, GroupId, ShapeError};
 pub use census::Census;
@@ -49,3 +50,4 @@ pub use patch::Patch;
 pub use room::{Ball, Block, Room};
 pub use seams::Seams;
 pub use sphere::Sphere;
+pub use uv::Uv;

@@ -122,7 +122,7 @@ impl Patch {
             error: f64::from(size) * (-32f64).exp2(),
             ng: n,
             ns: n,
-            uv,
+            uv: uv.into(),
             dpdu,
         }
     }

@@ -1,14 +1,14 @@
 //! Spheres.
 //!
 //! The quadratic is solved in double precision with the discriminant taken from the ray's closest approach to the
-//! centre (Haines et al. 2019), so that a small sphere far away keeps its shape, and the smaller root is taken from
-//! the product of the roots, so that a ray that starts on the surface knows it. The hit point is projected onto the
-//! sphere.
+//! centre (Haines et al. 2019), so that a small sphere far away keeps its shape: the approach is the cross product of the way to
+//! the centre and the direction, which loses no digits. The smaller root is taken from the product of the roots, so that a ray
+//! that starts on the surface knows it. The hit point is projected onto the sphere.
 
 use glam::{DMat3, DVec3};
 
 use super::{
-    ShapeError,
+    ShapeError, Uv,
     derivatives::Local,
     instance::{Placement, outward},
     interaction::Point,
@@ -153,7 +153,7 @@ impl Sphere {
     fn local_point(&self, ray: &Ray, t: f32) -> Point {
         let (centre, radius) = (self.centre.as_dvec3(), f64::from(self.radius));
         // `t` was rounded: of a small sphere far away it has lost the place, so solve again. Near it the ray itself is no better.
-        let is_near = (ray.dir * t).length() <= NEAR * self.radius;
+        let is_near = (ray.dir * t).length_squared() <= (NEAR * self.radius).powi(2);
         let t = if is_near {
             f64::from(t)
         } else {
@@ -165,15 +165,14 @@ impl Sphere {
         };
         let outward = (ray.origin.as_dvec3() - centre + ray.dir.as_dvec3() * t).normalize_or(DVec3::Z);
         let local = self.axes * outward;
-        let (uv, dpdu) = self.parameters(local);
         let ng = if self.reversed { -outward } else { outward };
         Point {
             p: centre + outward * radius,
             error: (centre.abs().max_element() + radius) * (-45f64).exp2(),
             ng,
             ns: ng,
-            uv,
-            dpdu: self.axes.transpose() * dpdu,
+            uv: self.parameters(local),
+            dpdu: self.axes.transpose() * self.along_u(local),
         }
     }
 
@@ -196,15 +195,22 @@ impl Sphere {
         })
     }
 
-    /// `(u, v)` of a direction from the centre, and the derivative of the point by `u`.
-    fn parameters(&self, n: DVec3) -> (Vec2, DVec3) {
-        let turn = self.part.turn;
+    /// The parameters of a direction from the centre.
+    fn parameters(&self, n: DVec3) -> Uv {
+        if self.part.is_whole() {
+            return Uv::OnSphere(n.as_vec3());
+        }
         let [south, north] = self.part.rims();
-        let u = turns(n.truncate()) / turn.turns();
+        let u = turns(n.truncate()) / self.part.turn.turns();
         let v = (fast::atan2(n.truncate().length(), n.z) - south) / (north - south);
+        Uv::Known(Vec2::new(u as f32, v as f32))
+    }
+
+    /// The derivative of the point by `u`, in a direction from the centre.
+    fn along_u(&self, n: DVec3) -> DVec3 {
         let around = DVec3::new(-n.y, n.x, 0.0);
-        let dpdu = if around == DVec3::ZERO { DVec3::Y } else { around };
-        (Vec2::new(u as f32, v as f32), dpdu * (turn.radians() * f64::from(self.radius)))
+        let around = if around == DVec3::ZERO { DVec3::Y } else { around };
+        around * (self.part.turn.radians() * f64::from(self.radius))
     }
 }
 
@@ -222,14 +228,14 @@ fn roots(centre: DVec3, radius: f64, ray: &Ray) -> Option<[f64; 2]> {
     let from = ray.origin.as_dvec3() - centre;
     let dir = ray.dir.as_dvec3();
     let a = dir.length_squared();
-    let b = -from.dot(dir);
-    let approach = from + dir * (b / a);
-    let discriminant = radius * radius - approach.length_squared();
+    // `a` times the square of half the chord: without a division, for most rays miss.
+    let discriminant = radius * radius * a - from.cross(dir).length_squared();
     if discriminant < 0.0 {
         return None;
     }
+    let b = -from.dot(dir);
     let c = from.length_squared() - radius * radius;
-    let q = b + (a * discriminant).sqrt().copysign(b);
+    let q = b + discriminant.sqrt().copysign(b);
     if q == 0.0 {
         return None; // a tangent that starts where it touches
     }

@@ -245,7 +245,7 @@ mod tests {
             least: 0.0,
             most: 1.0,
         };
-        let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z, part: None };
+        let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO.into(), n: Vec3::Z, part: None };
         assert!((texture(Grey::Mean).number(&at) - 1.0 / 3.0).abs() < 1e-6);
         assert!((texture(Grey::Luminance).number(&at) - 0.7152).abs() < 1e-4);
     }
@@ -263,7 +263,7 @@ mod tests {
             least: 0.0,
             most: 1.0,
         };
-        let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v), n: Vec3::Z, part: None };
+        let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v).into(), n: Vec3::Z, part: None };
         assert_eq!(texture(false).rgb(&at(0.25, 0.25))[0], 0.5); // lower left: 2
         assert_eq!(texture(true).rgb(&at(0.75, 0.25))[0], 0.25); // lower right: 3
     }
@@ -285,7 +285,8 @@ mod tests {
                 least: f32::MIN,
                 most: f32::MAX,
             };
-            let at = |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v), n: Vec3::Z, part: None };
+            let at =
+                |u: f32, v: f32| TexturePoint { p: Vec3::ZERO, uv: Vec2::new(u, v).into(), n: Vec3::Z, part: None };
             for (u, v) in [(0.3, 0.6), (0.05, 0.1), (0.77, 0.93)] {
                 let step = 1e-3;
                 let difference = |du: f32, dv: f32| {

@@ -50,7 +50,7 @@ impl Mapping2 {
     #[inline]
     pub fn at(&self, at: &TexturePoint) -> Vec2 {
         match self {
-            Self::Uv(map) => map.transform_point2(at.uv),
+            Self::Uv(map) => map.transform_point2(at.uv.get()),
             Self::Spherical { from_world } => {
                 let p = from_world.point(at.p);
                 let theta = p.z.atan2(p.truncate().length());
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     fn at(p: Vec3) -> TexturePoint {
-        TexturePoint { p, uv: Vec2::new(0.25, 0.5), n: Vec3::Z, part: None }
+        TexturePoint { p, uv: Vec2::new(0.25, 0.5).into(), n: Vec3::Z, part: None }
     }
 
     #[test]

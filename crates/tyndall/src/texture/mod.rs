@@ -24,7 +24,7 @@ pub use noise::Noise;
 
 use crate::{
     math::{Vec2, Vec3},
-    shape::Interaction,
+    shape::{Interaction, Uv},
     spectrum::{Lanes, Spectrum, Wavelengths},
 };
 
@@ -34,7 +34,7 @@ pub struct TexturePoint {
     /// The point in the world [length].
     pub p: Vec3,
     /// Surface parameters.
-    pub uv: Vec2,
+    pub uv: Uv,
     /// Shading normal.
     pub n: Vec3,
     /// Whose surface it is, if it is that of a shape of the scene.
@@ -153,10 +153,11 @@ impl Texture {
         const STEP: f32 = 0.0005;
         let here = self.scalar(at);
         let along = |tangent: Vec3, axis: Vec2| {
-            let uv = at.uv + axis * STEP;
+            let here_uv = at.uv.get();
+            let uv = here_uv + axis * STEP;
             // What is left of the step after rounding.
-            let step = (uv - at.uv).dot(axis);
-            let there = TexturePoint { p: at.p + tangent * STEP, uv, ..*at };
+            let step = (uv - here_uv).dot(axis);
+            let there = TexturePoint { p: at.p + tangent * STEP, uv: uv.into(), ..*at };
             (self.scalar(&there) - here) / if step > 0.0 { step } else { STEP }
         };
         Vec2::new(along(du, Vec2::X), along(dv, Vec2::Y))
@@ -271,7 +272,7 @@ mod tests {
     use super::*;
 
     fn at(u: f32, v: f32) -> TexturePoint {
-        TexturePoint { p: Vec3::new(u, v, 0.0), uv: Vec2::new(u, v), n: Vec3::Z, part: None }
+        TexturePoint { p: Vec3::new(u, v, 0.0), uv: Vec2::new(u, v).into(), n: Vec3::Z, part: None }
     }
 
     fn pair(a: f32, b: f32) -> Arc<[Texture; 2]> {

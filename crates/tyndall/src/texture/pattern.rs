@@ -93,7 +93,7 @@ mod tests {
     use crate::math::Transform;
 
     fn at(p: Vec3) -> TexturePoint {
-        TexturePoint { p, uv: p.truncate(), n: Vec3::Z, part: None }
+        TexturePoint { p, uv: p.truncate().into(), n: Vec3::Z, part: None }
     }
 
     #[test]

@@ -255,7 +255,7 @@ fn a_parallelogram_has_the_parameters_of_its_patch() {
         let ray = Ray::new(origin, (target - origin).normalize());
         let Some(hit) = geometry.intersect(&ray, f32::INFINITY) else { panic!("missed {uv}") };
         let point = geometry.interaction(&ray, &hit);
-        assert!((point.uv - uv).length() < 1e-3, "{} {uv}", point.uv);
+        assert!((point.uv.get() - uv).length() < 1e-3, "{} {uv}", point.uv.get());
         assert!(point.ng.dot(transform.normal(Vec3::Z)) > 0.0);
         assert!((point.dpdu - transform.vector(Vec3::X)).length() < 1e-4);
     }
@@ -305,7 +305,9 @@ fn an_instance_is_its_shapes_transformed() {
             assert_eq!(b.instance, 0);
             assert!((p.p - q.p).length() < 1e-5 * (1.0 + a.t), "{p:?} {q:?}");
             assert!((p.ng - q.ng).length() < 2e-2 || a.prim != b.prim, "{p:?} {q:?}");
-            let parameters = (p.uv - q.uv).length() < 1e-2 || a.prim != b.prim || (p.uv.x - q.uv.x).abs() > 0.98;
+            let parameters = (p.uv.get() - q.uv.get()).length() < 1e-2
+                || a.prim != b.prim
+                || (p.uv.get().x - q.uv.get().x).abs() > 0.98;
             assert!(parameters, "{p:?} {q:?}");
         }
         assert!(hits > 1000 && differ < 20, "{differ} of {hits} hits differ");

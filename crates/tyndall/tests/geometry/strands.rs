@@ -275,7 +275,7 @@ fn v_is_the_offset_of_the_ray_across_the_strand() {
             let hit = geometry.intersect(&ray, f32::INFINITY).unwrap();
             let found = geometry.interaction(&ray, &hit);
             assert!(
-                (found.uv.x - 0.75).abs() < 1e-6 && (found.uv.y - 0.5 - 0.5 * h).abs() < 1e-5,
+                (found.uv.get().x - 0.75).abs() < 1e-6 && (found.uv.get().y - 0.5 - 0.5 * h).abs() < 1e-5,
                 "{style:?} {found:?}"
             );
             assert!((found.dpdu - Vec3::X * 2.0).length() < 1e-5, "{found:?}");

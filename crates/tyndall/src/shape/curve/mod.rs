@@ -299,7 +299,7 @@ impl Curves {
         };
         let u = f64::from(u0) + w * f64::from(u1 - u0);
         let v = 0.5 + 0.5 * h.clamp(-1.0, 1.0);
-        Point { p, error, ng, ns: ng, uv: Vec2::new(u as f32, v as f32), dpdu: tangent / f64::from(u1 - u0) }
+        Point { p, error, ng, ns: ng, uv: Vec2::new(u as f32, v as f32).into(), dpdu: tangent / f64::from(u1 - u0) }
     }
 
     /// Along the strand and across it. They have no relief, so nothing asks how their normals turn.
