@@ -105,7 +105,7 @@ impl Path {
         &self,
         scene: &Scene,
         vertex: &Vertex,
-        (attempt, [u_choice, u, v]): (&Attempt, [f32; 3]),
+        (attempt, [u_choice, u, v, _]): (&Attempt, [f32; 4]),
         (weights, history): (&PathWeights, &History),
         sink: &mut impl Sink,
         tally: &mut Tally,

@@ -1,6 +1,8 @@
 //! Next event estimation: the light that a light sample finds, at a vertex, at a collision that a walk deep inside a medium
 //! has announced, and at one that was aimed at a lamp.
 
+use std::f32::consts::PI;
+
 use super::{Deep, VolPath, volpath::Sink, walk::Announced};
 use crate::{
     light::Reference,
@@ -46,6 +48,15 @@ impl<S: Sink> Seeker for Lamps<'_, S> {
     }
 }
 
+/// Where a vertex scatters less light than this share of what it would if it scattered evenly, a ray to the light is sent the more
+/// rarely, and counts for more \[1\]. A fibre of hair sends nearly all of its light elsewhere.
+const FAINT: f32 = 0.5;
+
+/// How likely the ray is, for what the vertex scatters towards the light [1/sr].
+fn worth(f: Lanes) -> f32 {
+    (f.max_lane() * (4.0 * PI / FAINT)).min(1.0)
+}
+
 impl Path {
     /// A light sample, straight or through a wall.
     #[inline]
@@ -55,7 +66,7 @@ impl Path {
         scene: &Scene,
         settings: &VolPath,
         vertex: &Vertex,
-        how: (&Attempt, [f32; 3]),
+        how: (&Attempt, [f32; 4]),
         of: (&PathWeights, &History),
         sink: &mut impl Sink,
         tally: &mut Tally,
@@ -74,7 +85,7 @@ impl Path {
         &self,
         scene: &Scene,
         vertex: &Vertex,
-        (attempt, [u_choice, u, v]): (&Attempt, [f32; 3]),
+        (attempt, [u_choice, u, v, u_worth]): (&Attempt, [f32; 4]),
         (weights, history): (&PathWeights, &History),
         sink: &mut impl Sink,
         tally: &mut Tally,
@@ -84,7 +95,8 @@ impl Path {
         let light = scene.lights.get(id);
         let Some(sample) = light.sample(&reference, Vec2::new(u, v), &self.wavelengths) else { return };
         let (f, scatter_pdf) = vertex.eval(sample.dir);
-        if f.is_zero() {
+        let worth = worth(f);
+        if u_worth >= worth {
             return;
         }
         let nearer = attempt.towards(reference.p, sample.dir).and_then(|attempt| attempt.closer(scene, reference.p));
@@ -114,7 +126,7 @@ impl Path {
             let weight = weights.light_sample([supposed * pdf, pdf], found, transmittance);
             let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
             let source = if light.is_environment() { Source::Sky(id) } else { Source::Light(id) };
-            sink.add(weight * (supposed / odds) * f * sample.li, history, Some(turn), source);
+            sink.add(weight * (supposed / (odds * worth)) * f * sample.li, history, Some(turn), source);
         }
     }
 
@@ -134,7 +146,7 @@ impl Path {
         let (mut history, Some(medium)) = (self.history, self.inside.id()) else { return };
         history.walked(announced.collisions - 1);
         sink.turned(&mut history, Turn::Medium(medium), announced.collisions - 1);
-        let numbers = [rng.next_1d(), rng.next_1d(), rng.next_1d()];
+        let numbers = std::array::from_fn(|_| rng.next_1d());
         let vertex = Vertex::Medium { p, dir, medium, phase };
         self.look_for_light(scene, settings, &vertex, (&attempt, numbers), (&weights, &history), sink, tally);
     }

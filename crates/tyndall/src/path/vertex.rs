@@ -15,6 +15,7 @@ use crate::{
 
 /// A scattering vertex.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::large_enum_variant, reason = "one lives at a time")]
 pub enum Vertex<'s> {
     /// On a surface.
     Surface {
