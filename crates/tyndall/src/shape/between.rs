@@ -3,6 +3,7 @@
 use super::{
     Geometry, Hit, Interaction, ObjectId, Shape,
     bvh::{NONE, Primitive, between::between},
+    curve::Line,
     sphere,
 };
 use crate::math::{Ray, Vec2, Vec3};
@@ -58,7 +59,7 @@ impl Geometry {
             Primitive::Curve { object, ref piece } => {
                 let Shape::Curves(curves) = &self.shapes[object as usize] else { return None };
                 let hit = |(t, uv)| Hit { prim: piece.segment, ..of(object, NONE, t, uv) };
-                curves.intersect(piece, ray, length).map(hit)
+                curves.intersect(piece, &Line::of(ray), length).map(hit)
             }
             Primitive::Instance(_) => None, // groups hold no instances
         }

@@ -10,7 +10,7 @@ use super::{
         NONE, Primitive, Tree,
         traverse::{Met, Nearest, traverse},
     },
-    curve::Piece,
+    curve::{Line, Piece},
     instance::Instance,
     interaction::Point,
     passage::{Passed, Placed, View},
@@ -174,11 +174,12 @@ impl Geometry {
 
     #[inline(always)]
     fn search<S: Simd, M: Met, const ANY: bool>(&self, simd: S, ray: &Ray, met: &mut M) {
+        let mut line = None;
         traverse::<S, M, ANY>(simd, &self.world, ray, met, |primitive, met| {
             if let Primitive::Instance(index) = *primitive {
                 self.search_instance::<S, M, ANY>(simd, index, ray, met);
             } else {
-                self.test(primitive, ray, met);
+                self.test(primitive, ray, &mut line, met);
             }
         });
     }
@@ -193,15 +194,17 @@ impl Geometry {
             #[inline(always)]
             || {
                 let tree = &self.groups[*group as usize];
+                let mut line = None;
                 traverse::<S, _, ANY>(simd, tree, &local, &mut inside, |primitive, met| {
-                    self.test(primitive, &local, met);
+                    self.test(primitive, &local, &mut line, met);
                 });
             },
         );
     }
 
+    /// `line` is that of the ray, once something asks for it.
     #[inline(always)]
-    fn test(&self, primitive: &Primitive, ray: &Ray, met: &mut impl Met) {
+    fn test(&self, primitive: &Primitive, ray: &Ray, line: &mut Option<Line>, met: &mut impl Met) {
         match *primitive {
             Primitive::Sphere { centre, radius, object, instance } => {
                 if let Some(t) = sphere::nearest(centre, radius, ray, met.limit()) {
@@ -214,7 +217,7 @@ impl Geometry {
                 }
             }
             Primitive::Curve { object, ref piece } => {
-                if let Some((t, uv)) = self.test_curve(object, piece, ray, met.limit()) {
+                if let Some((t, uv)) = self.test_curve(object, piece, line.get_or_insert_with(|| Line::of(ray)), met.limit()) {
                     met.take(Nearest { t, object, prim: piece.segment, instance: NONE, uv });
                 }
             }
@@ -229,9 +232,9 @@ impl Geometry {
     }
 
     #[inline(never)]
-    fn test_curve(&self, object: u32, piece: &Piece, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
+    fn test_curve(&self, object: u32, piece: &Piece, line: &Line, t_max: f32) -> Option<(f32, Vec2)> {
         let Shape::Curves(curves) = &self.shapes[object as usize] else { return None };
-        curves.intersect(piece, ray, t_max)
+        curves.intersect(piece, line, t_max)
     }
 
     /// The surface at a hit of this ray.
@@ -378,7 +381,7 @@ mod tests {
                 let t_max =
                     if i % 3 == 0 { f32::INFINITY } else { (far + 1.5 * wave(i + 1).abs()) * scale as f32 / longer };
                 let alone = pieces.iter().filter_map(|(object, curves, piece)| {
-                    let (t, uv) = curves.intersect(piece, &ray, t_max)?;
+                    let (t, uv) = curves.intersect(piece, &Line::of(&ray), t_max)?;
                     Some(Hit { t, object: ObjectId(*object), prim: piece.segment, uv, instance: NONE })
                 });
                 let alone: Vec<_> = alone.collect();

@@ -33,7 +33,8 @@ use super::{
 use crate::math::{Bounds, Ray, Transform, Vec2, Vec3};
 use capsule::Capsule;
 use joint::Joint;
-use segment::{Bezier, Line, Meeting, nearer};
+pub(super) use segment::Line;
+use segment::{Bezier, Meeting, nearer};
 
 /// A segment is cut in halves at most so often, and these again, if their boxes have less than [`WORTHWHILE`] of its surface.
 const CUTS: u32 = 2;
@@ -84,6 +85,10 @@ pub(super) struct Piece {
     pub(super) segment: u32,
     /// Its parameters on the segment.
     pub(super) part: [f32; 2],
+    /// Whether a ray enters it once: [`Bezier::is_cone`].
+    is_cone: bool,
+    /// Whether the tube goes on from its end in another direction: [`Joint`].
+    is_at_joint: bool,
 }
 
 /// Any number of strands of one style.
@@ -192,9 +197,11 @@ impl Curves {
     pub(super) fn pieces(&self) -> impl Iterator<Item = (Piece, Sheath)> {
         (0..self.segments.len() as u32).flat_map(|segment| {
             let bezier = self.segments[segment as usize].bezier();
+            let joint = if self.style == Style::Round { self.joint(segment, &bezier) } else { None };
             let mut pieces = Vec::new();
             cut(&bezier, ([0.0, 1.0], sheath(&bezier, [0.0, 1.0])), 0, &mut |part, sheath| {
-                pieces.push((Piece { segment, part }, sheath));
+                let is_at_joint = part[1] == 1.0 && joint.is_some();
+                pieces.push((Piece { segment, part, is_cone: bezier.is_cone(part.map(f64::from)), is_at_joint }, sheath));
             });
             pieces
         })
@@ -205,16 +212,15 @@ impl Curves {
     }
 
     /// The nearest hit of a piece before `t_max`: distance, and where on the segment.
-    pub(super) fn intersect(&self, piece: &Piece, ray: &Ray, t_max: f32) -> Option<(f32, Vec2)> {
-        let (line, length) = line(ray);
+    pub(super) fn intersect(&self, piece: &Piece, line: &Line, t_max: f32) -> Option<(f32, Vec2)> {
         let segment = &self.segments[piece.segment as usize];
         let (bezier, part) = (segment.bezier(), piece.part.map(f64::from));
         let [distance, w] = match self.style {
-            Style::Round => self.enter(piece, &bezier, &line),
+            Style::Round => self.enter(piece, &bezier, line),
             Style::Flat => line.see(&bezier).cross(part, |_| 1.0),
             Style::Ribbon => line.see(&bezier).cross(part, |w| self.normal(piece.segment, w).dot(line.dir).abs()),
         }?;
-        let t = (distance / length) as f32;
+        let t = line.t(distance);
         (t > 0.0 && t < t_max).then_some((t, Vec2::new(w as f32, 0.0)))
     }
 
@@ -223,8 +229,12 @@ impl Curves {
         if let Some(capsule) = self.capsule(piece.segment) {
             return capsule.enter(line);
         }
-        let joint = if piece.part[1] == 1.0 { self.joint(piece.segment, bezier) } else { None };
-        nearer([line.see(bezier).enter(piece.part.map(f64::from)), joint.and_then(|joint| joint.enter(line))])
+        let (seen, part) = (line.see(bezier), piece.part.map(f64::from));
+        let tube = if piece.is_cone { seen.enter_cone(part) } else { seen.enter(part) };
+        if !piece.is_at_joint {
+            return tube;
+        }
+        nearer([tube, self.joint(piece.segment, bezier).and_then(|joint| joint.enter(line))])
     }
 
     /// A straight piece of a tube, if this is one: its neighbours are those that share its ends.
@@ -259,7 +269,7 @@ impl Curves {
     }
 
     pub(super) fn point(&self, ray: &Ray, segment: u32, at: Vec2) -> Point {
-        let (line, _) = line(ray);
+        let line = Line::of(ray);
         let Segment { u: [u0, u1], .. } = self.segments[segment as usize];
         let bezier = self.segments[segment as usize].bezier();
         let w = f64::from(at.x);
@@ -310,13 +320,6 @@ impl Curves {
         let across = n.cross(along).normalize_or_zero() * (2.0 * jet.p.w);
         Local { dp: [along, across], dn: [DVec3::ZERO; 2] }
     }
-}
-
-/// The line of a ray, and the length of the ray's direction.
-fn line(ray: &Ray) -> (Line, f64) {
-    let dir = ray.dir.as_dvec3();
-    let length = dir.length();
-    (Line { origin: ray.origin.as_dvec3(), dir: dir / length }, length)
 }
 
 /// The box of the control points, grown by the greatest radius.

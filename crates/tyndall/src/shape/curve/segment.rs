@@ -15,8 +15,10 @@
 
 use glam::{DVec3, DVec4, Vec4Swizzles as _};
 
-/// Steps of `w` below this end the search.
-const SETTLED: f64 = 1e-9;
+use crate::math::Ray;
+
+/// Steps of `w` below this are the last: what is left after one is as small as its square.
+const SETTLED: f64 = 1e-6;
 
 /// How far a part reaches beyond its ends at least \[1\], so that neighbours overlap: see [`Bezier::overlap`].
 const OVERLAP: f64 = 1e-7;
@@ -87,11 +89,22 @@ impl Bezier {
         (b - a).length().max((c - b).length()).max((d - c).length())
     }
 
+    /// Whether a part is so nearly a cone that a ray enters it once, unless it sees it from its end.
+    pub(super) fn is_cone(&self, [from, to]: [f64; 2]) -> bool {
+        is_cone(self.bulge() * (to - from) * (to - from), self.reach())
+    }
+
     /// How far the curve is from its chord at most: an eighth of the greatest second derivative.
     pub(super) fn bulge(&self) -> f64 {
         let [a, b, c, d] = self.0.map(DVec4::truncate);
         0.75 * (a - b - b + c).length_squared().max((b - c - c + d).length_squared()).sqrt()
     }
+}
+
+/// Whether a part that bulges so much is nearly a cone.
+#[inline]
+fn is_cone(bulge: f64, reach: f64) -> bool {
+    bulge <= STRAIGHT * reach
 }
 
 /// That at the lesser distance.
@@ -101,9 +114,13 @@ pub(super) fn nearer<const N: usize>(found: [Option<Meeting>; N]) -> Option<Meet
 
 /// A ray made ready for curves: distances are along the unit direction.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line {
+pub(in crate::shape) struct Line {
     pub(super) origin: DVec3,
     pub(super) dir: DVec3,
+    /// Two axes across.
+    across: [DVec3; 2],
+    /// Of the ray's direction.
+    length: f64,
 }
 
 /// A curve as a ray sees it: across the ray on two axes, along it, and the radius, each a polynomial of the parameter.
@@ -124,6 +141,20 @@ struct Approach {
 pub(super) type Meeting = [f64; 2];
 
 impl Line {
+    pub(in crate::shape) fn of(ray: &Ray) -> Self {
+        let dir = ray.dir.as_dvec3();
+        let length = dir.length();
+        let dir = dir / length;
+        let (x, y) = dir.any_orthonormal_pair();
+        Self { origin: ray.origin.as_dvec3(), dir, across: [x, y], length }
+    }
+
+    /// A distance along the line, as the ray counts.
+    #[inline]
+    pub(super) fn t(&self, distance: f64) -> f32 {
+        (distance / self.length) as f32
+    }
+
     /// From the ray's place nearest to `p` to `p`, and how far that place is.
     #[inline]
     pub(super) fn across(&self, p: DVec3) -> (DVec3, f64) {
@@ -135,7 +166,7 @@ impl Line {
     /// The curve as this ray sees it.
     #[inline]
     pub(super) fn see<'a>(&self, curve: &'a Bezier) -> Seen<'a> {
-        let (x, y) = self.dir.any_orthonormal_pair();
+        let [x, y] = self.across;
         let [a, b, c, d] = curve.0.map(|p| {
             let from = p.truncate() - self.origin;
             DVec4::new(from.dot(x), from.dot(y), from.dot(self.dir), p.w)
@@ -164,13 +195,27 @@ impl Seen<'_> {
         if distance > (reach + own_bulge) * (1.0 + OVERLAP) {
             return None;
         }
-        if own_bulge > STRAIGHT * reach && to - from > SHORTEST {
+        if !is_cone(own_bulge, reach) && to - from > SHORTEST {
             let middle = 0.5 * (from + to);
             return nearer([[from, middle], [middle, to]].map(|half| self.enter_within(half, reach, bulge)));
         }
+        self.enter_near(part, reach, w, projected)
+    }
+
+    /// The entrance into the tube around a part that [is nearly a cone](Bezier::is_cone), if it is ahead of the origin.
+    #[inline]
+    pub(super) fn enter_cone(&self, part: [f64; 2]) -> Option<Meeting> {
+        let Approach { w, projected, .. } = self.approach(part);
+        self.enter_near(part, self.curve.reach(), w, projected)
+    }
+
+    /// From where the chord of a part is nearest.
+    #[inline]
+    fn enter_near(&self, part: [f64; 2], reach: f64, w: f64, projected: f64) -> Option<Meeting> {
         if projected > reach {
-            return self.search(part, w); // nearly a cone, which is entered once
+            return self.search(part, w); // a cone is entered once
         }
+        let [from, to] = part;
         nearer([from, w, to].map(|start| self.search(part, start)))
     }
 
@@ -204,6 +249,7 @@ impl Seen<'_> {
         for count in 0..MAX_STEPS {
             let (distance, step, is_met) = self.meet_cone(w)?;
             if step.abs() < SETTLED {
+                let w = w + step;
                 return (is_met && distance > 0.0 && self.is_on(part, w)).then_some([distance, w]);
             }
             let step = step.clamp(-0.5 * width, 0.5 * width);
@@ -267,6 +313,7 @@ impl Seen<'_> {
                 return None;
             }
             if step.abs() < SETTLED {
+                let w = w + step;
                 let is_met = e.length() <= p.w * half(w) && along > 0.0 && self.is_on(part, w);
                 return is_met.then_some([along, w]);
             }
