@@ -201,7 +201,8 @@ impl Curves {
             let mut pieces = Vec::new();
             cut(&bezier, ([0.0, 1.0], sheath(&bezier, [0.0, 1.0])), 0, &mut |part, sheath| {
                 let is_at_joint = part[1] == 1.0 && joint.is_some();
-                pieces.push((Piece { segment, part, is_cone: bezier.is_cone(part.map(f64::from)), is_at_joint }, sheath));
+                pieces
+                    .push((Piece { segment, part, is_cone: bezier.is_cone(part.map(f64::from)), is_at_joint }, sheath));
             });
             pieces
         })
@@ -212,6 +213,7 @@ impl Curves {
     }
 
     /// The nearest hit of a piece before `t_max`: distance, and where on the segment.
+    #[inline(always)]
     pub(super) fn intersect(&self, piece: &Piece, line: &Line, t_max: f32) -> Option<(f32, Vec2)> {
         let segment = &self.segments[piece.segment as usize];
         let (bezier, part) = (segment.bezier(), piece.part.map(f64::from));
@@ -225,6 +227,7 @@ impl Curves {
     }
 
     /// Where a ray comes into a piece of a tube, or into the bend at its end.
+    #[inline(always)]
     fn enter(&self, piece: &Piece, bezier: &Bezier, line: &Line) -> Option<Meeting> {
         if let Some(capsule) = self.capsule(piece.segment) {
             return capsule.enter(line);
