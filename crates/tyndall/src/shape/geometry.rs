@@ -179,7 +179,7 @@ impl Geometry {
             if let Primitive::Instance(index) = *primitive {
                 self.search_instance::<S, M, ANY>(simd, index, ray, met);
             } else {
-                self.test(simd, primitive, ray, &mut line, met);
+                self.test(primitive, ray, &mut line, met);
             }
         });
     }
@@ -196,7 +196,7 @@ impl Geometry {
                 let tree = &self.groups[*group as usize];
                 let mut line = None;
                 traverse::<S, _, ANY>(simd, tree, &local, &mut inside, |primitive, met| {
-                    self.test(simd, primitive, &local, &mut line, met);
+                    self.test(primitive, &local, &mut line, met);
                 });
             },
         );
@@ -204,7 +204,7 @@ impl Geometry {
 
     /// `line` is that of the ray, once something asks for it.
     #[inline(always)]
-    fn test<S: Simd>(&self, simd: S, primitive: &Primitive, ray: &Ray, line: &mut Option<Line>, met: &mut impl Met) {
+    fn test(&self, primitive: &Primitive, ray: &Ray, line: &mut Option<Line>, met: &mut impl Met) {
         match *primitive {
             Primitive::Sphere { centre, radius, object, instance } => {
                 if let Some(t) = sphere::nearest(centre, radius, ray, met.limit()) {
@@ -218,7 +218,7 @@ impl Geometry {
             }
             Primitive::Curve { object, ref piece } => {
                 if let Some((t, uv)) =
-                    self.test_curve(simd, object, piece, line.get_or_insert_with(|| Line::of(ray)), met.limit())
+                    self.test_curve(object, piece, line.get_or_insert_with(|| Line::of(ray)), met.limit())
                 {
                     met.take(Nearest { t, object, prim: piece.segment, instance: NONE, uv });
                 }
@@ -234,12 +234,9 @@ impl Geometry {
     }
 
     #[inline(never)]
-    fn test_curve<S: Simd>(&self, simd: S, object: u32, piece: &Piece, line: &Line, t_max: f32) -> Option<(f32, Vec2)> {
+    fn test_curve(&self, object: u32, piece: &Piece, line: &Line, t_max: f32) -> Option<(f32, Vec2)> {
         let Shape::Curves(curves) = &self.shapes[object as usize] else { return None };
-        simd.vectorize(
-            #[inline(always)]
-            || curves.intersect(piece, line, t_max),
-        )
+        curves.intersect(piece, line, t_max)
     }
 
     /// The surface at a hit of this ray.
