@@ -19,15 +19,28 @@ const FAR_TERMS: usize = 18;
 static NEAR: [[f64; NEAR_TERMS]; FAR + 1] = near();
 static HANKEL: [f64; FAR_TERMS] = hankel();
 
+/// Terms that are enough for the digits of single precision.
+const SINGLE_NEAR_TERMS: usize = 12;
+const SINGLE_FAR_TERMS: usize = 6;
+
 /// `e^(−x) I₀(x)` for `x ≥ 0`: between 0 and 1.
-#[inline]
 pub(super) fn scaled_i0(x: f64) -> f64 {
+    of_terms::<NEAR_TERMS, FAR_TERMS>(x)
+}
+
+/// The same to the digits of single precision.
+#[inline]
+pub(super) fn scaled_i0_single(x: f64) -> f64 {
+    of_terms::<SINGLE_NEAR_TERMS, SINGLE_FAR_TERMS>(x)
+}
+
+#[inline]
+fn of_terms<const NEAR_COUNT: usize, const FAR_COUNT: usize>(x: f64) -> f64 {
     if x < FAR as f64 {
         let nearest = (x + 0.5) as usize;
-        polynomial(&NEAR[nearest.min(FAR)], x - nearest as f64)
+        polynomial(&NEAR[nearest.min(FAR)][..NEAR_COUNT], x - nearest as f64)
     } else {
-        let terms = if x > 256.0 { &HANKEL[..8] } else { &HANKEL };
-        polynomial(terms, 1.0 / x) / (TAU * x).sqrt()
+        polynomial(&HANKEL[..FAR_COUNT], 1.0 / x) / (TAU * x).sqrt()
     }
 }
 
@@ -107,6 +120,8 @@ mod tests {
             let mean: f64 = (0..n).map(|i| (-2.0 * x * half(i) * half(i)).exp()).sum();
             let expected = mean / f64::from(n);
             assert!((scaled_i0(x) / expected - 1.0).abs() < 2e-14, "{x}: {} {expected}", scaled_i0(x));
+            let single = scaled_i0_single(x);
+            assert!((single / expected - 1.0).abs() < 3e-8, "{x}: {single} {expected}");
         }
     }
 }

@@ -20,13 +20,13 @@
 mod bessel;
 pub mod lobes;
 
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
 use super::{BsdfSample, ScatterKind};
 use crate::{
-    math::{Vec2, Vec3},
+    math::{Vec2, Vec3, fast},
     spectrum::Lanes,
 };
 use lobes::{Entry, Widths, exit_azimuth, sample_longitudinal, shares};
@@ -103,16 +103,10 @@ impl Hair {
     }
 
     fn densities(&self, entry: &Entry, wo: Vec3, wi: Vec3) -> [f64; 4] {
-        let (theta_o, theta_i) = (inclination(wo), inclination(wi));
         let phi = turn(wo, wi);
         let [gamma_o, gamma_t] = entry.gamma;
-        std::array::from_fn(|p| {
-            let round = match p {
-                3 => 0.5 * FRAC_1_PI,
-                _ => self.widths.azimuthal(phi - exit_azimuth(p, gamma_o, gamma_t)),
-            };
-            self.widths.longitudinal(p, theta_i, theta_o) * round
-        })
+        let away = [0, 1, 2].map(|p| phi - exit_azimuth(p, gamma_o, gamma_t));
+        self.widths.densities(inclination(wo), inclination(wi), away)
     }
 
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3) -> (Lanes, f32) {
@@ -142,8 +136,9 @@ impl Hair {
             let [gamma_o, gamma_t] = entry.gamma;
             self.widths.sample_azimuthal(exit_azimuth(p, gamma_o, gamma_t), again)
         };
-        let around =
-            DVec2::new(wo.y.into(), wo.z.into()).normalize_or(DVec2::X).rotate(DVec2::from_angle(round)) * cos_i;
+        let (sin, cos) = fast::sin_cos_turn((round / TAU).rem_euclid(1.0) as f32);
+        let around = DVec2::new(wo.y.into(), wo.z.into()).normalize_or(DVec2::X);
+        let around = around.rotate(DVec2::new(cos.into(), sin.into())) * cos_i;
         let wi = DVec3::new(sin_i, around.x, around.y).normalize().as_vec3();
 
         let lobes = Lobes { density: self.densities(&entry, wo, wi), share };
@@ -165,7 +160,7 @@ fn inclination(w: Vec3) -> [f64; 2] {
 /// By how much the azimuth of one direction is beyond that of another [rad].
 fn turn(from: Vec3, to: Vec3) -> f64 {
     let [from, to] = [from, to].map(|w| DVec2::new(w.y.into(), w.z.into()));
-    from.perp_dot(to).atan2(from.dot(to))
+    fast::atan2(from.perp_dot(to), from.dot(to))
 }
 
 /// How often each lobe is drawn \[1\]: by the mean of its lanes.
