@@ -255,7 +255,7 @@ fn assert_fibre(scene: &Scene, eta: f32, sigma_a: [f32; 3], beta: [f32; 2], degr
         spectrum::Lanes,
         texture::TexturePoint,
     };
-    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::new(0.2, 0.75), n: Vec3::Z, part: None };
+    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::new(0.2, 0.75).into(), n: Vec3::Z, part: None };
     let found = scene.materials[0].bsdf(&at, &Wavelengths::Rgb, 0);
     let [r, g, b] = sigma_a;
     let expected = Bsdf::Hair(Hair::new(0.5, eta, Lanes::rgb(r, g, b), beta, degrees.to_radians()));

@@ -140,7 +140,7 @@ fn a_texture_may_be_scaled_by_more_than_1() {
         Material "diffuse" "texture reflectance" "a" Shape "sphere""#;
     let (desc, sources) = parse(Path::new("scene.pbrt"), text).unwrap();
     let (scene, _) = build(&desc, sources, ColorMode::Rgb).unwrap();
-    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO, n: Vec3::Z, part: None };
+    let at = TexturePoint { p: Vec3::ZERO, uv: Vec2::ZERO.into(), n: Vec3::Z, part: None };
     let Bsdf::Diffuse(diffuse) = scene.materials[0].bsdf(&at, &Wavelengths::Rgb, 0) else { panic!() };
     let expected = Lanes::rgb(0.6, 1.0, 0.3);
     assert!((diffuse.reflectance - expected).map(f32::abs).max_lane() < 1e-6, "{diffuse:?}");
