@@ -360,6 +360,13 @@ impl Bsdf<'_> {
         }
     }
 
+    /// How many light samples are worth their while at a vertex: two on a fibre, whose lobes are narrow and which stands among
+    /// others that shade it.
+    #[inline]
+    pub fn light_samples(&self) -> u32 {
+        if matches!(self, Self::Hair(_)) { 2 } else { 1 }
+    }
+
     /// Whether all that is not a Dirac lobe follows Lambert's law.
     #[inline]
     pub fn is_diffuse(&self) -> bool {

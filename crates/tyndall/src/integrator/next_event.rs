@@ -50,11 +50,16 @@ impl<S: Sink> Seeker for Lamps<'_, S> {
 
 /// Where a vertex scatters less light than this share of what it would if it scattered evenly, a ray to the light is sent the more
 /// rarely, and counts for more \[1\]. A fibre of hair sends nearly all of its light elsewhere.
-const FAINT: f32 = 0.5;
+const FAINT: f32 = 0.6;
 
-/// How likely the ray is, for what the vertex scatters towards the light [1/sr].
-fn worth(f: Lanes) -> f32 {
-    (f.max_lane() * (4.0 * PI / FAINT)).min(1.0)
+/// How likely the ray is, for what the vertex scatters towards the light [1/sr], where it is one of so many samples.
+fn worth(f: Lanes, samples: f32) -> f32 {
+    (f.max_lane() * (4.0 * PI / FAINT) / samples).min(1.0)
+}
+
+/// Numbers in [0, 1), each further by a part of 1 and beyond it from the beginning: of several samples, numbers that lie evenly.
+pub(super) fn shifted<const N: usize>(numbers: [f32; N], by: f32) -> [f32; N] {
+    numbers.map(|u| if u + by < 1.0 { u + by } else { u + by - 1.0 })
 }
 
 impl Path {
@@ -95,12 +100,12 @@ impl Path {
         let light = scene.lights.get(id);
         let Some(sample) = light.sample(&reference, Vec2::new(u, v), &self.wavelengths) else { return };
         let (f, scatter_pdf) = vertex.eval(sample.dir);
-        let worth = worth(f);
+        let worth = worth(f, attempt.samples);
         if u_worth >= worth {
             return;
         }
         let nearer = attempt.towards(reference.p, sample.dir).and_then(|attempt| attempt.closer(scene, reference.p));
-        let Some(Attempt { odds, supposed, .. }) = nearer else { return };
+        let Some(Attempt { odds, supposed, samples, .. }) = nearer else { return };
         let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
         let origin = vertex.shadow_origin(sample.dir);
         let mut proxied_within;
@@ -123,7 +128,7 @@ impl Path {
             let scatter_pdf = if sample.dirac { 0.0 } else { scatter_pdf };
             let found = scatter_pdf * scene.reached(&inside, transmittance);
             let pdf = probability * sample.pdf;
-            let weight = weights.light_sample([supposed * pdf, pdf], found, transmittance);
+            let weight = weights.light_sample([supposed * samples * pdf, pdf], found, transmittance);
             let turn = vertex.turn(vertex.crosses(self.ray.dir, sample.dir), false);
             let source = if light.is_environment() { Source::Sky(id) } else { Source::Light(id) };
             sink.add(weight * (supposed / (odds * worth)) * f * sample.li, history, Some(turn), source);

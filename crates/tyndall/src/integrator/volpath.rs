@@ -1,7 +1,7 @@
 //! The workhorse: unidirectional path tracing of surfaces and homogeneous media, with light sampling at every vertex
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
-use super::next_event::Lamps;
+use super::next_event::{Lamps, shifted};
 use crate::{
     bend::Goal,
     light::Reference,
@@ -279,10 +279,15 @@ impl Path {
             self.part_wavelengths(scene);
         }
         let reference = vertex.reference();
+        let samples = vertex.light_samples();
+        let light = light.of(samples);
         if light.is_made() && vertex.can_use_light_samples() {
             let numbers = self.sampler.light(self.history.vertices);
             let of = (&self.weights, &self.history);
-            self.look_for_light(scene, settings, vertex, (&light, numbers), of, sink, tally);
+            for sample in 0..samples {
+                let numbers = shifted(numbers, sample as f32 / light.samples);
+                self.look_for_light(scene, settings, vertex, (&light, numbers), of, sink, tally);
+            }
         }
         if !self.weights.throughput().is_finite() {
             sink.add(self.weights.beta, &self.history, None, Source::Fault); // the film counts and locates it
@@ -302,7 +307,7 @@ impl Path {
             self.part_wavelengths(scene);
         }
         if !scattered.specular {
-            self.weights.scatter(scattered.weight, scattered.pdf, light.supposed);
+            self.weights.scatter(scattered.weight, scattered.pdf, light.supposed * light.samples);
             self.sight = Self::sight(scene, vertex);
         } else if let Some(passed) = self.passes(scene, vertex, &scattered) {
             self.weights.bend(scattered.weight, scattered.pdf);

@@ -141,6 +141,15 @@ impl<'s> Vertex<'s> {
         }
     }
 
+    /// How many light samples are taken.
+    #[inline]
+    pub fn light_samples(&self) -> u32 {
+        match self {
+            Self::Surface { bsdf, .. } => bsdf.light_samples(),
+            Self::Medium { .. } => 1,
+        }
+    }
+
     /// `f·|cos|` and the density [1/sr] of scattering towards `dir`.
     #[inline]
     pub fn eval(&self, dir: Vec3) -> (Lanes, f32) {
