@@ -57,11 +57,6 @@ fn worth(f: Lanes, samples: f32) -> f32 {
     (f.max_lane() * (4.0 * PI / FAINT) / samples).min(1.0)
 }
 
-/// Numbers in [0, 1), each further by a part of 1 and beyond it from the beginning: of several samples, numbers that lie evenly.
-pub(super) fn shifted<const N: usize>(numbers: [f32; N], by: f32) -> [f32; N] {
-    numbers.map(|u| if u + by < 1.0 { u + by } else { u + by - 1.0 })
-}
-
 impl Path {
     /// A light sample, straight or through a wall.
     #[inline]
@@ -81,6 +76,24 @@ impl Path {
             // The wall is a vertex too.
             Sight::Behind | Sight::Past(_) if settings.max_depth.is_some_and(|limit| of.1.depth() + 1 >= limit) => {}
             Sight::Behind | Sight::Past(_) => self.sample_light_bent(scene, vertex, how, of, sink, tally),
+        }
+    }
+
+    /// The light samples after the first at a surface, with numbers that lie evenly between its own.
+    #[inline(never)]
+    pub(super) fn look_again(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex,
+        (attempt, numbers): (&Attempt, [f32; 4]),
+        sink: &mut impl Sink,
+        tally: &mut Tally,
+    ) {
+        let of = (&self.weights, &self.history);
+        for sample in 1..attempt.samples as u32 {
+            let by = sample as f32 / attempt.samples;
+            let numbers = numbers.map(|u| if u + by < 1.0 { u + by } else { u + by - 1.0 });
+            self.sample_light(scene, vertex, (attempt, numbers), of, sink, tally);
         }
     }
 

@@ -1,7 +1,7 @@
 //! The workhorse: unidirectional path tracing of surfaces and homogeneous media, with light sampling at every vertex
 //! and multiple importance sampling over both ways to find a light and over the lanes.
 
-use super::next_event::{Lamps, shifted};
+use super::next_event::Lamps;
 use crate::{
     bend::Goal,
     light::Reference,
@@ -284,9 +284,9 @@ impl Path {
         if light.is_made() && vertex.can_use_light_samples() {
             let numbers = self.sampler.light(self.history.vertices);
             let of = (&self.weights, &self.history);
-            for sample in 0..samples {
-                let numbers = shifted(numbers, sample as f32 / light.samples);
-                self.look_for_light(scene, settings, vertex, (&light, numbers), of, sink, tally);
+            self.look_for_light(scene, settings, vertex, (&light, numbers), of, sink, tally);
+            if samples > 1 {
+                self.look_again(scene, vertex, (&light, numbers), sink, tally);
             }
         }
         if !self.weights.throughput().is_finite() {
