@@ -48,13 +48,15 @@ impl<S: Sink> Seeker for Lamps<'_, S> {
     }
 }
 
-/// Where a vertex scatters less light than this share of what it would if it scattered evenly, a ray to the light is sent the more
+/// Where a surface scatters less light than this share of what it would if it scattered evenly, a ray to the light is sent the more
 /// rarely, and counts for more \[1\]. A fibre of hair sends nearly all of its light elsewhere.
 const FAINT: f32 = 0.6;
 
-/// How likely the ray is, for what the vertex scatters towards the light [1/sr], where it is one of so many samples.
-fn worth(f: Lanes, samples: f32) -> f32 {
-    (f.max_lane() * (4.0 * PI / FAINT) / samples).min(1.0)
+/// How likely the ray is, for what the vertex scatters towards the light [1/sr], where it is one of so many samples. In a medium,
+/// where collisions come as near to small lamps as they like, no light sample must count for more than it does.
+#[inline]
+fn worth(vertex: &Vertex, f: Lanes, samples: f32) -> f32 {
+    if vertex.is_surface() { (f.max_lane() * (4.0 * PI / FAINT) / samples).min(1.0) } else { 1.0 }
 }
 
 impl Path {
@@ -113,8 +115,8 @@ impl Path {
         let light = scene.lights.get(id);
         let Some(sample) = light.sample(&reference, Vec2::new(u, v), &self.wavelengths) else { return };
         let (f, scatter_pdf) = vertex.eval(sample.dir);
-        let worth = worth(f, attempt.samples);
-        if u_worth >= worth {
+        let worth = worth(vertex, f, attempt.samples);
+        if f.is_zero() || u_worth >= worth {
             return;
         }
         let nearer = attempt.towards(reference.p, sample.dir).and_then(|attempt| attempt.closer(scene, reference.p));
@@ -164,7 +166,7 @@ impl Path {
         let (mut history, Some(medium)) = (self.history, self.inside.id()) else { return };
         history.walked(announced.collisions - 1);
         sink.turned(&mut history, Turn::Medium(medium), announced.collisions - 1);
-        let numbers = std::array::from_fn(|_| rng.next_1d());
+        let numbers = [rng.next_1d(), rng.next_1d(), rng.next_1d(), 0.0];
         let vertex = Vertex::Medium { p, dir, medium, phase };
         self.look_for_light(scene, settings, &vertex, (&attempt, numbers), (&weights, &history), sink, tally);
     }
@@ -203,9 +205,16 @@ impl Path {
     /// Light at a collision that was aimed at a lamp.
     #[inline]
     fn sample_aimed(&self, scene: &Scene, aimed: &Aimed, sink: &mut impl Sink, tally: &mut Tally) {
-        let Aimed { p, weights, numbers } = aimed;
+        let Aimed { p, weights, numbers: [u_choice, u, v] } = *aimed;
         let Some(medium) = self.inside.id() else { return };
-        let vertex = Vertex::Medium { p: *p, dir: self.ray.dir, medium, phase: &scene.medium(medium).phase };
-        self.sample_light(scene, &vertex, (&Attempt::CERTAIN, *numbers), (weights, &self.history), sink, tally);
+        let vertex = Vertex::Medium { p, dir: self.ray.dir, medium, phase: &scene.medium(medium).phase };
+        self.sample_light(
+            scene,
+            &vertex,
+            (&Attempt::CERTAIN, [u_choice, u, v, 0.0]),
+            (&weights, &self.history),
+            sink,
+            tally,
+        );
     }
 }

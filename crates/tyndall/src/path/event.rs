@@ -48,7 +48,7 @@ pub struct Aimed {
     /// What the path would weigh there.
     pub weights: PathWeights,
     /// Random numbers for the light.
-    pub numbers: [f32; 4],
+    pub numbers: [f32; 3],
 }
 
 impl Path {
@@ -171,7 +171,7 @@ impl Path {
     #[inline]
     fn collide_aimed(&mut self, scene: &Scene, aim: &Aim) -> Option<Aimed> {
         let Inside::Medium { id, coefficients } = &self.inside else { return None };
-        let [u, u_choice, u_0, u_1] = match self.history.flights {
+        let [u, numbers @ ..] = match self.history.flights {
             1 => self.sampler.aim(self.history.vertices),
             _ => self.sampler.random(),
         };
@@ -182,7 +182,7 @@ impl Path {
         }
         let mut weights = self.weights;
         weights.collide_aimed(coefficients.sigma_t, coefficients.sigma_s, transmittance, aim.pdf(distance));
-        Some(Aimed { p, weights, numbers: [u_choice, u_0, u_1, self.sampler.next_1d()] })
+        Some(Aimed { p, weights, numbers })
     }
 
     #[inline]

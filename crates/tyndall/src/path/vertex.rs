@@ -141,6 +141,12 @@ impl<'s> Vertex<'s> {
         }
     }
 
+    /// Whether it is on a surface.
+    #[inline]
+    pub fn is_surface(&self) -> bool {
+        matches!(self, Self::Surface { .. })
+    }
+
     /// How many light samples are taken.
     #[inline]
     pub fn light_samples(&self) -> u32 {

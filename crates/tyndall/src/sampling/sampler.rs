@@ -98,9 +98,9 @@ impl Sampler {
         }
     }
 
-    /// Choice of a light (one) and of a point on it (two) at vertex `vertex`, and whether that is worth a ray (one).
+    /// Choice of a light (one) and of a point on it (two) at vertex `vertex`.
     #[inline]
-    pub fn light(&mut self, vertex: u32) -> [f32; 4] {
+    pub fn light(&mut self, vertex: u32) -> [f32; 3] {
         self.vertex_block(vertex, 1)
     }
 
