@@ -282,9 +282,12 @@ impl Path {
         let samples = vertex.light_samples();
         let light = light.of(samples);
         if light.is_made() && vertex.can_use_light_samples() {
-            let [u_choice, u, v] = self.sampler.light(self.history.vertices);
-            let u_worth = if vertex.is_surface() { self.sampler.next_1d() } else { 0.0 };
-            let numbers = [u_choice, u, v, u_worth];
+            let numbers = if vertex.is_surface() {
+                self.sampler.light(self.history.vertices)
+            } else {
+                let [u_choice, u, v] = self.sampler.light(self.history.vertices);
+                [u_choice, u, v, 0.0]
+            };
             let of = (&self.weights, &self.history);
             self.look_for_light(scene, settings, vertex, (&light, numbers), of, sink, tally);
             if samples > 1 {

@@ -98,9 +98,9 @@ impl Sampler {
         }
     }
 
-    /// Choice of a light (one) and of a point on it (two) at vertex `vertex`.
+    /// Choice of a light (one) and of a point on it (two) at vertex `vertex`; on surfaces, whether that is worth a ray (one).
     #[inline]
-    pub fn light(&mut self, vertex: u32) -> [f32; 3] {
+    pub fn light<const N: usize>(&mut self, vertex: u32) -> [f32; N] {
         self.vertex_block(vertex, 1)
     }
 
