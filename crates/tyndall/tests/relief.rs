@@ -136,6 +136,30 @@ fn a_flat_relief_is_none() {
     }
 }
 
+/// A relief leans along the parameters of the surface, on a mirror as on chalk.
+#[test]
+fn a_mirror_leans_as_chalk_does() {
+    for rule in [MITSUBA, PLAIN, Rule::Pbrt] {
+        for map in [leaning([0.5, -0.3, 0.7]), bumps(0.5)] {
+            let (scene, id) = ball(diffuse(0.5), map, rule);
+            let mut stream = Stream::new(5);
+            for _ in 0..1000 {
+                let at = Vec3::new(stream.next_f32(), stream.next_f32(), stream.next_f32()) - 0.5;
+                let ray = Ray::new(at.normalize() * 3.0, -at.normalize());
+                let hit = scene.geometry.interaction(&ray, &scene.geometry.intersect(&ray, 100.0).unwrap());
+                let mirror = Bsdf::conductor_of_reflectance(Lanes::splat(0.5), 0.0, 0.0);
+                let [chalk, mirror] = [Bsdf::diffuse(Lanes::ONE), mirror].map(|bsdf| {
+                    let Vertex::Surface { frame, .. } = Vertex::met(&scene, hit, bsdf, ray.dir, Some(id)) else {
+                        panic!()
+                    };
+                    frame
+                });
+                assert_eq!(chalk, mirror, "{rule:?}");
+            }
+        }
+    }
+}
+
 /// The layer of shading normals has those of the relief, that of true normals has not.
 #[test]
 fn the_layer_of_shading_normals_shows_the_relief() {

@@ -87,13 +87,14 @@ impl Path {
         &self,
         scene: &Scene,
         vertex: &Vertex,
+        samples: u32,
         (attempt, numbers): (&Attempt, [f32; 4]),
         sink: &mut impl Sink,
         tally: &mut Tally,
     ) {
         let of = (&self.weights, &self.history);
-        for sample in 1..attempt.samples as u32 {
-            let by = sample as f32 / attempt.samples;
+        for sample in 1..samples {
+            let by = sample as f32 / samples as f32;
             let numbers = numbers.map(|u| if u + by < 1.0 { u + by } else { u + by - 1.0 });
             self.sample_light(scene, vertex, (attempt, numbers), of, sink, tally);
         }
@@ -115,12 +116,13 @@ impl Path {
         let light = scene.lights.get(id);
         let Some(sample) = light.sample(&reference, Vec2::new(u, v), &self.wavelengths) else { return };
         let (f, scatter_pdf) = vertex.eval(sample.dir);
-        let worth = worth(vertex, f, attempt.samples);
+        let samples = vertex.light_samples() as f32;
+        let worth = worth(vertex, f, samples);
         if f.is_zero() || u_worth >= worth {
             return;
         }
         let nearer = attempt.towards(reference.p, sample.dir).and_then(|attempt| attempt.closer(scene, reference.p));
-        let Some(Attempt { odds, supposed, samples, .. }) = nearer else { return };
+        let Some(Attempt { odds, supposed, .. }) = nearer else { return };
         let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
         let origin = vertex.shadow_origin(sample.dir);
         let mut proxied_within;

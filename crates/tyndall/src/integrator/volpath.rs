@@ -280,18 +280,17 @@ impl Path {
         }
         let reference = vertex.reference();
         let samples = vertex.light_samples();
-        let light = light.of(samples);
         if light.is_made() && vertex.can_use_light_samples() {
             let numbers = if vertex.is_surface() {
                 self.sampler.light(self.history.vertices)
             } else {
                 let [u_choice, u, v] = self.sampler.light(self.history.vertices);
-                [u_choice, u, v, 0.0]
+                [u_choice, u, v, 0.0] // in a medium every ray is sent
             };
             let of = (&self.weights, &self.history);
             self.look_for_light(scene, settings, vertex, (&light, numbers), of, sink, tally);
             if samples > 1 {
-                self.look_again(scene, vertex, (&light, numbers), sink, tally);
+                self.look_again(scene, vertex, samples, (&light, numbers), sink, tally);
             }
         }
         if !self.weights.throughput().is_finite() {
@@ -312,7 +311,7 @@ impl Path {
             self.part_wavelengths(scene);
         }
         if !scattered.specular {
-            self.weights.scatter(scattered.weight, scattered.pdf, light.supposed * light.samples);
+            self.weights.scatter(scattered.weight, scattered.pdf, light.supposed * samples as f32);
             self.sight = Self::sight(scene, vertex);
         } else if let Some(passed) = self.passes(scene, vertex, &scattered) {
             self.weights.bend(scattered.weight, scattered.pdf);

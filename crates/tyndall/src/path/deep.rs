@@ -104,8 +104,6 @@ pub struct Attempt {
     pub odds: f32,
     /// The probability that multiple importance sampling supposes, at least the true one \[1\].
     pub supposed: f32,
-    /// How many light samples there are if there are any \[1\].
-    pub samples: f32,
     /// The number that was drawn, in [0, 1].
     draw: f32,
     /// No surface and no light is here.
@@ -120,16 +118,8 @@ pub struct Attempt {
 
 impl Attempt {
     /// As at every surface.
-    pub const CERTAIN: Self = Self {
-        odds: 1.0,
-        supposed: 1.0,
-        samples: 1.0,
-        draw: 0.0,
-        room: Room::NONE,
-        closer: 0.0,
-        share: 1.0,
-        sigma_min: 0.0,
-    };
+    pub const CERTAIN: Self =
+        Self { odds: 1.0, supposed: 1.0, draw: 0.0, room: Room::NONE, closer: 0.0, share: 1.0, sigma_min: 0.0 };
     /// As in a medium that no light reaches: what paths run into there counts in full.
     pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, draw: 1.0, ..Self::CERTAIN };
 
@@ -137,13 +127,6 @@ impl Attempt {
     #[inline]
     fn within(depths: &Depths, room: Room) -> Self {
         Self { room, share: depths.share(), sigma_min: depths.sigma_min, ..Self::CERTAIN }
-    }
-
-    /// The same of so many light samples.
-    #[inline]
-    #[must_use]
-    pub fn of(self, samples: u32) -> Self {
-        Self { samples: samples as f32, ..self }
     }
 
     /// Whether it is.

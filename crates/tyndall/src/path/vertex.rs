@@ -69,7 +69,12 @@ impl<'s> Vertex<'s> {
     #[inline]
     pub fn surface(hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3) -> Self {
         // A mirror is the same all round.
-        let mut frame = if bsdf.is_specular() { Frame::around(hit.ns) } else { hit.shading_frame() };
+        let frame = if bsdf.is_specular() { Frame::around(hit.ns) } else { hit.shading_frame() };
+        Self::framed(hit, bsdf, dir, frame)
+    }
+
+    #[inline]
+    fn framed(hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3, mut frame: Frame) -> Self {
         let mut wo = frame.to_local(-dir);
         if !may_leave(&bsdf, wo.z, -dir.dot(hit.ng)) {
             frame = Frame::around(hit.ng);
@@ -81,11 +86,11 @@ impl<'s> Vertex<'s> {
     /// The same on the relief of an embossed material, if there is one.
     #[inline]
     pub fn met(scene: &Scene, hit: Interaction, bsdf: Bsdf<'s>, dir: Vec3, relief: Option<MaterialId>) -> Self {
-        let mut vertex = Self::surface(hit, bsdf, dir);
-        if let Some(relief) = relief.and_then(|id| scene.relief(id)) {
-            vertex = vertex.embossed(scene, dir, relief);
+        match relief.and_then(|id| scene.relief(id)) {
+            // Its slopes are along the parameters, whatever the BSDF.
+            Some(relief) => Self::framed(hit, bsdf, dir, hit.shading_frame()).embossed(scene, dir, relief),
+            None => Self::surface(hit, bsdf, dir),
         }
-        vertex
     }
 
     #[inline(never)]

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-use crate::math::fast;
+use crate::math::{Vec2, fast};
 
 /// The azimuths of a surface of revolution: from 0 (its own x axis) to a full turn or a part of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +78,15 @@ impl SpherePart {
     #[inline]
     pub(super) fn rims(&self) -> [f64; 2] {
         if self.z == Self::WHOLE.z { [PI, 0.0] } else { self.z.map(f64::acos) }
+    }
+
+    /// The parameters of a direction from the centre: `u` is the azimuth over its range, `v` the angle from the southern rim over
+    /// that between the rims \[1\].
+    pub(super) fn parameters(&self, n: DVec3) -> Vec2 {
+        let [south, north] = self.rims();
+        let u = turns(n.truncate()) / self.turn.turns();
+        let v = (fast::atan2(n.truncate().length(), n.z) - south) / (north - south);
+        Vec2::new(u as f32, v as f32)
     }
 
     /// Share of the area of the sphere \[1\].

@@ -12,9 +12,9 @@ use super::{
     derivatives::Local,
     instance::{Placement, outward},
     interaction::Point,
-    part::{SpherePart, turns},
+    part::SpherePart,
 };
-use crate::math::{Bounds, Ray, Transform, Vec2, Vec3, fast};
+use crate::math::{Bounds, Ray, Transform, Vec3};
 
 /// Radii up to which a distance in single precision tells a point of a sphere well enough \[1\].
 const NEAR: f32 = 64.0;
@@ -197,13 +197,7 @@ impl Sphere {
 
     /// The parameters of a direction from the centre.
     fn parameters(&self, n: DVec3) -> Uv {
-        if self.part.is_whole() {
-            return Uv::OnSphere(n.as_vec3());
-        }
-        let [south, north] = self.part.rims();
-        let u = turns(n.truncate()) / self.part.turn.turns();
-        let v = (fast::atan2(n.truncate().length(), n.z) - south) / (north - south);
-        Uv::Known(Vec2::new(u as f32, v as f32))
+        if self.part.is_whole() { Uv::OnSphere(n.as_vec3()) } else { self.part.parameters(n).into() }
     }
 
     /// The derivative of the point by `u`, in a direction from the centre.

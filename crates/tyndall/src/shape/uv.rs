@@ -1,10 +1,8 @@
 //! Surface parameters, worked out when something asks for them: clear glass never does, and the angles of a sphere take longer
 //! than a look into the tree.
 
-use std::f64::consts::PI;
-
-use super::part::turns;
-use crate::math::{Vec2, Vec3, fast};
+use super::SpherePart;
+use crate::math::{Vec2, Vec3};
 
 /// Surface parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,11 +26,7 @@ impl Uv {
     pub fn get(self) -> Vec2 {
         match self {
             Self::Known(uv) => uv,
-            Self::OnSphere(n) => {
-                let n = n.as_dvec3();
-                let v = 1.0 - fast::atan2(n.truncate().length(), n.z) / PI;
-                Vec2::new(turns(n.truncate()) as f32, v as f32)
-            }
+            Self::OnSphere(n) => SpherePart::WHOLE.parameters(n.as_dvec3()),
         }
     }
 }

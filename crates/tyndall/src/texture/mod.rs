@@ -151,13 +151,12 @@ impl Texture {
 
     fn difference(&self, at: &TexturePoint, [du, dv]: [Vec3; 2]) -> Vec2 {
         const STEP: f32 = 0.0005;
-        let here = self.scalar(at);
+        let (here, uv) = (self.scalar(at), at.uv.get());
         let along = |tangent: Vec3, axis: Vec2| {
-            let here_uv = at.uv.get();
-            let uv = here_uv + axis * STEP;
+            let moved = uv + axis * STEP;
             // What is left of the step after rounding.
-            let step = (uv - here_uv).dot(axis);
-            let there = TexturePoint { p: at.p + tangent * STEP, uv: uv.into(), ..*at };
+            let step = (moved - uv).dot(axis);
+            let there = TexturePoint { p: at.p + tangent * STEP, uv: moved.into(), ..*at };
             (self.scalar(&there) - here) / if step > 0.0 { step } else { STEP }
         };
         Vec2::new(along(du, Vec2::X), along(dv, Vec2::Y))

@@ -1,4 +1,5 @@
-//! The modified Bessel function I₀ without its growth, `e^(−x) I₀(x)`, to the digits of double precision.
+//! The modified Bessel function I₀ without its growth, `e^(−x) I₀(x)`, to the digits of double precision or, with fewer terms, of
+//! single precision.
 //!
 //! Below [`FAR`], Taylor series about whole numbers. Their first two terms come from `I₀(x) = Σ (x²/4)^k / k!²` and
 //! `I₁ = I₀′`; the rest from the equation that `y = e^(−x) I₀(x)` obeys, `x y″ + (2x + 1) y′ + y = 0`. From there on, Hankel's

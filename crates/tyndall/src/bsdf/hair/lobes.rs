@@ -32,8 +32,8 @@ impl Widths {
     pub(super) fn new(variance: f32, scale: f32, alpha: f64) -> Self {
         let (v, s) = (f64::from(variance), f64::from(scale));
         let (wide, within) = (fast_exp(-0.5 / v), share_within(s));
-        let (sin, cos) = fast::sin_cos_turn((alpha / TAU).rem_euclid(1.0) as f32);
-        let sin = f64::from(sin).clamp(-1.0, 1.0);
+        let [sin, cos] = sin_cos(alpha);
+        let sin = sin.clamp(-1.0, 1.0);
         let along = |v: f64, e: f64| (1.0 / (v * (1.0 - e))) as f32;
         Self {
             variance,
@@ -43,7 +43,7 @@ impl Widths {
             within: within as f32,
             round: (1.0 / (s * within)) as f32,
             // To the digits that make lobes lose nothing.
-            tilt: [sin, (1.0 - sin * sin).sqrt().copysign(cos.into())],
+            tilt: [sin, (1.0 - sin * sin).sqrt().copysign(cos)],
         }
     }
 
@@ -117,7 +117,14 @@ fn share_within(s: f64) -> f64 {
     (1.0 - e) / (1.0 + e)
 }
 
-/// To the digits of single precision.
+/// Sine and cosine of an angle [rad], to the digits of single precision.
+#[inline]
+pub(super) fn sin_cos(angle: f64) -> [f64; 2] {
+    let (sin, cos) = fast::sin_cos_turn((angle / TAU).rem_euclid(1.0) as f32);
+    [sin.into(), cos.into()]
+}
+
+/// The exponential, to the digits of single precision.
 #[inline]
 fn fast_exp(x: f64) -> f64 {
     fast::exp(x as f32).into()
@@ -126,7 +133,7 @@ fn fast_exp(x: f64) -> f64 {
 /// Longitudinal scattering `M(θ_i, θ_o)` of variance `v` [1/rad of sin θ]: `∫ M cos θ_i dθ_i = 1`, exactly.
 ///
 /// `exp(−sin θ_i sin θ_o / v) I₀(cos θ_i cos θ_o / v) / (2 v sinh(1/v))` (d'Eon et al. 2011, eq. 7), each factor without its growth:
-/// `2 v sinh(1/v) = e^(1/v) · v (1 − e^(−2/v))`.
+/// `2 v sinh(1/v) = e^(1/v) · v (1 − e^(−2/v))`. In double precision: the twin of what the lobes have in single precision.
 pub fn longitudinal(v: f64, theta_i: [f64; 2], theta_o: [f64; 2]) -> f64 {
     let ([sin_i, cos_i], [sin_o, cos_o]) = (theta_i, theta_o);
     let (cos, inverse) = (cos_i * cos_o, 1.0 / v);

@@ -20,7 +20,7 @@
 mod bessel;
 pub mod lobes;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
@@ -29,7 +29,7 @@ use crate::{
     math::{Vec2, Vec3, fast},
     spectrum::Lanes,
 };
-use lobes::{Entry, Widths, exit_azimuth, sample_longitudinal, shares};
+use lobes::{Entry, Widths, exit_azimuth, sample_longitudinal, shares, sin_cos};
 
 /// The lowest roughness: below it lobes are sharper than single precision can tell directions apart.
 const SMOOTHEST: f32 = 0.01;
@@ -136,9 +136,9 @@ impl Hair {
             let [gamma_o, gamma_t] = entry.gamma;
             self.widths.sample_azimuthal(exit_azimuth(p, gamma_o, gamma_t), again)
         };
-        let (sin, cos) = fast::sin_cos_turn((round / TAU).rem_euclid(1.0) as f32);
+        let [sin, cos] = sin_cos(round);
         let around = DVec2::new(wo.y.into(), wo.z.into()).normalize_or(DVec2::X);
-        let around = around.rotate(DVec2::new(cos.into(), sin.into())) * cos_i;
+        let around = around.rotate(DVec2::new(cos, sin)) * cos_i;
         let wi = DVec3::new(sin_i, around.x, around.y).normalize().as_vec3();
 
         let lobes = Lobes { density: self.densities(&entry, wo, wi), share };

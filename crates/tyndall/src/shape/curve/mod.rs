@@ -40,9 +40,8 @@ use segment::{Bezier, Meeting, nearer};
 const CUTS: u32 = 2;
 const WORTHWHILE: f32 = 0.9;
 
-/// Pieces are cut more often, up to so often, whose bulge is more than this share of their radius.
+/// Pieces are cut more often, up to so often, that are no cones.
 const MAX_CUTS: u32 = 4;
-const BENT: f64 = 0.5;
 
 /// What is around a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -349,8 +348,7 @@ fn sheath(bezier: &Bezier, part: [f32; 2]) -> Sheath {
 /// Cuts a part of a segment, with its sheath, into halves while that is worth it: `cuts` are those behind it.
 fn cut(bezier: &Bezier, (part, whole): ([f32; 2], Sheath), cuts: u32, found: &mut impl FnMut([f32; 2], Sheath)) {
     let [from, to] = part;
-    let bulge = bezier.bulge() * f64::from(to - from).powi(2);
-    let is_bent = cuts < MAX_CUTS && bulge > BENT * bezier.reach();
+    let is_bent = cuts < MAX_CUTS && !bezier.is_cone(part.map(f64::from));
     if !is_bent && cuts >= CUTS {
         return found(part, whole);
     }

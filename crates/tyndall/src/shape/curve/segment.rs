@@ -144,6 +144,7 @@ struct Approach {
 pub(super) type Meeting = [f64; 2];
 
 impl Line {
+    /// The line of a ray.
     pub(in crate::shape) fn of(ray: &Ray) -> Self {
         let dir = ray.dir.as_dvec3();
         let length = dir.length();
