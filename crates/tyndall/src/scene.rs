@@ -16,7 +16,7 @@ use crate::{
     material::Material,
     math::{Bounds, Ray, Vec3, rounding::gamma},
     medium::{Body, Homogeneous, MediumId, MediumInterface, Member, Within, enclosure},
-    shape::{Distances, Geometry, Hit, Hollows, Interaction, ObjectId, Room, Shape},
+    shape::{Distances, Geometry, Hit, Hollows, Interaction, ObjectId, Room, Shape, TouchingBalls},
     spectrum::ColorMode,
     surface::may_be_open,
 };
@@ -106,12 +106,16 @@ struct Facts {
     hollows: Hollows,
     /// By medium: the greatest clearance in it [length].
     deepest: Vec<f32>,
+    /// By medium: the greatest radius of balls that touch its surface [length].
+    widest: Vec<f32>,
     /// By medium: whether a small lamp is in it.
     holds_lamp: Vec<bool>,
     /// Where lights are that are no surfaces; one box for all if they are many.
     bare_lights: Vec<Bounds>,
     /// Distances deep inside media, where a search for them is slow.
     distances: Option<Distances>,
+    /// Balls that touch the triangles around media from inside.
+    touching: TouchingBalls,
     /// Bodies with a priority, which may overlap.
     bodies: Vec<Body>,
     /// What the camera is in.
@@ -208,6 +212,8 @@ impl Scene {
         self.facts.room = rooms::of_media(&self, &objects);
         self.facts.hollows = rooms::hollows(&self);
         self.facts.distances = rooms::distances(&self);
+        self.facts.widest = rooms::widest(&self);
+        self.facts.touching = rooms::touching(&self);
         self.facts.around_camera = enclosure::around_camera(&self);
         self
     }

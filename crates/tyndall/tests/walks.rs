@@ -16,7 +16,7 @@ use tyndall::{
     render::{Rendering, Settings, render},
     sampling::SamplerKind,
     scene::Scene,
-    shape::Room,
+    shape::{Ball, ObjectId, Room, Shape},
     spectrum::ColorMode,
 };
 
@@ -211,11 +211,78 @@ fn remembered_distances_are_bounds() {
         assert!(found <= exact, "{p}: {found} above {exact}");
         assert!(found >= exact - 1.8 * cell, "{p}: {found} far below {exact}");
         loose += u32::from(found < exact);
-        let (centre, near) = scene.clearance_near(p, 9.0);
-        assert!((centre - p).length() <= 0.9 * cell && near <= scene.geometry.clearance(centre, 9.0), "{p}");
-        assert!(near <= centre.distance(position), "{p}");
     }
     assert!(loose > 5000, "the grid has answered {loose} times");
+}
+
+/// A body of many triangles with bumps and dents, ten to a hundred free paths deep.
+fn bumpy(color: ColorMode, phase: &Phase, boundary: Material) -> World {
+    let mut world = World::seen(Vec3::new(0.0, 1.0, 4.0), Vec3::ZERO);
+    world.color = color;
+    world.camera.view.model = CameraModel::Perspective(Perspective::pinhole([-0.4, 0.4, -0.3, 0.3]));
+    (world.camera.width, world.camera.height) = (24, 18);
+    let inside = Homogeneous { phase: phase.clone(), ..medium([0.01, 0.05, 0.2], [10.0, 30.0, 50.0], 0.0) };
+    world.uneven_ball(|d| 1.0 + 0.1 * (9.0 * d.x).sin() * (8.0 * d.y).sin(), 40, boundary, inside);
+    world.shining_disk(3.0, 0.7, diffuse(0.0), 10.0);
+    world.sky(0.3);
+    world
+}
+
+/// In it a ball touches nearly every triangle, within a thousandth of its radius: no surface and no lamp is in the ball, and in one
+/// twice as large there would be, or it is as large as any.
+#[test]
+fn balls_that_touch_a_surface_have_nothing_in_them() {
+    let lamp = Vec3::new(0.2, 0.1, 0.3);
+    let mut world = bumpy(ColorMode::Rgb, &phases()[0], Material::Null);
+    world.lights.push(Light::Point(PointLight { position: lamp, intensity: common::grey(1.0), luminance: 1.0 }));
+    let scene = world.scene();
+    let id = ObjectId(0);
+    let Shape::Mesh(mesh) = scene.geometry.shape(id) else { panic!() };
+    let (mut found, mut widest) = (0, 0f32);
+    for (prim, _) in (0..).zip(&mesh.indices) {
+        let touching = scene.touching((id, prim)).expect("a body has ends");
+        assert_eq!(scene.touching((id, prim)), Some(touching), "what is remembered is what was found");
+        let Some(touching) = touching else { continue };
+        let Ball { centre, radius } = touching.ball;
+        let [a, b, c] = mesh.triangle(prim);
+        let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).normalize());
+        assert!(scene.geometry.clearance(centre, f32::INFINITY) >= radius && centre.distance(lamp) >= radius);
+        assert!(
+            (middle.distance(centre) / radius - 1.0).abs() < 1.1e-3 && normal.dot(middle - centre) > 0.999 * radius
+        );
+        // A point at the surface has room enough, one outside or on the far side has not.
+        assert!(touching.holds(middle - normal * 0.2 * radius) && !touching.holds(middle + normal * 0.1 * radius));
+        assert!(!touching.holds(centre - normal * 0.95 * radius));
+        let larger = middle - normal * (2.0 * radius);
+        let is_free = scene.geometry.clearance(larger, f32::INFINITY).min(larger.distance(lamp)) >= 2.0 * radius;
+        (found, widest) = (found + 1, widest.max(radius));
+        assert!(!is_free, "{prim}: {radius}");
+    }
+    assert!(found > mesh.indices.len() * 9 / 10 && widest > 0.2, "{found} of {}, {widest}", mesh.indices.len());
+    assert_eq!(scene.touching((ObjectId(1), 0)), None, "a lamp has no inside");
+    assert_eq!(scene.touching((id, u32::MAX)), None);
+}
+
+/// Also where balls touch the surface.
+#[test]
+fn walks_in_a_bumpy_body_find_the_light_that_rays_find() {
+    for (color, phase) in [ColorMode::Rgb, ColorMode::Mono, ColorMode::Spectral].into_iter().zip(phases()) {
+        for boundary in [Material::Null, glass(1.3, 0.0)] {
+            let scene = bumpy(color, &phase, boundary).scene();
+            let of = |deep, spp, seed| {
+                let settings = Settings { spp, seed, sampler: SamplerKind::Independent, ..Settings::default() };
+                picture(&scene, &followed(deep), &settings)
+            };
+            assert_eq!(of(Deep::Alone, 4, 3).film, of(Deep::Together, 4, 3).film, "{color:?} {phase:?}");
+            let (walks, rays) = (of(Deep::Together, 64, 1), of(Deep::Traced, 64, 2));
+            for c in 0..3 {
+                let ((a, ea), (b, eb)) = (mean(&walks, c), mean(&rays, c));
+                let z = (a - b) / ea.hypot(eb);
+                assert!(z.abs() < 4.5, "{color:?} {phase:?}, channel {c}: {a} ± {ea}, {b} ± {eb}: z = {z:.1}");
+                assert!(ea < 0.02 * a, "{ea} {a}");
+            }
+        }
+    }
 }
 
 /// Deep inside a clear ball of 10⁴ free paths hardly a ray is cast.

@@ -11,11 +11,13 @@ use crate::peers::{directory, scene_file};
 use crate::shell::output;
 
 /// Scenes, and how many times the efficiency of the better Mitsuba is asked.
-const SCENES: [(&str, f64); 6] = [
+const SCENES: [(&str, f64); 8] = [
     ("b_marble_cube_matched", 20.0),
     ("c_milk_sphere", 40.0),
     ("b4_marble_mesh", 10.0),
+    ("b5_marble_smooth_mesh", 10.0),
     ("c2_milk_mesh", 10.0),
+    ("c3_milk_smooth_mesh", 10.0),
     ("d_fog_box", 3.0),
     ("d2_fog_lamp", 5.0),
 ];

@@ -10,22 +10,38 @@ use testkit::Stream;
 
 use crate::shell::root;
 
-/// Scenes of the peers whose body is a mesh instead, their names ending in [`MESHED`]: the scene, what stands for its body
-/// there, and the name of the new one.
-const BODIES: [[&str; 3]; 2] = [
+/// Scenes of the peers whose body is a mesh instead: the scene, what stands for its body there, and the names of the new ones
+/// with a rough and a smooth body.
+const BODIES: [[&str; 4]; 2] = [
     [
         "b_marble_cube_matched",
         r#"<shape type="cube"><transform name="to_world"><scale value="20"/></transform>"#,
         "b4_marble_mesh",
+        "b5_marble_smooth_mesh",
     ],
-    ["c_milk_sphere", r#"<shape type="sphere"><float name="radius" value="20"/>"#, "c2_milk_mesh"],
+    [
+        "c_milk_sphere",
+        r#"<shape type="sphere"><float name="radius" value="20"/>"#,
+        "c2_milk_mesh",
+        "c3_milk_smooth_mesh",
+    ],
 ];
 /// How the names of scenes end that are made here.
 pub(crate) const MESHED: &str = "_mesh";
 
-/// The same body as 100,000 triangles.
-const BODY: &str = r#"<shape type="ply"><string name="filename" value="body.ply"/><boolean name="face_normals" value="true"/>
-  <transform name="to_world"><scale value="20"/></transform>"#;
+/// Files of the bodies, of 100,000 triangles each.
+const ROUGH: &str = "body.ply";
+const SMOOTH: &str = "smooth_body.ply";
+/// Meridians of both.
+const MERIDIANS: u32 = 318;
+
+/// A body from a file.
+fn body(file: &str) -> String {
+    format!(
+        r#"<shape type="ply"><string name="filename" value="{file}"/><boolean name="face_normals" value="true"/>
+  <transform name="to_world"><scale value="20"/></transform>"#
+    )
+}
 
 /// The scene with hair, and the file of its strands.
 pub(crate) const HAIR: &str = "e_hair";
@@ -35,13 +51,16 @@ const STRANDS: &str = "strands.txt";
 pub(crate) fn write_bodies() -> Result<()> {
     let directory = root().join("target/bench");
     std::fs::create_dir_all(&directory)?;
-    write_ball(&directory.join("body.ply"), 318)?;
+    write_ball(&directory.join(ROUGH), MERIDIANS)?;
+    write_uneven_ball(&directory.join(SMOOTH), MERIDIANS, lumps)?;
     write_lock(&directory.join(STRANDS), 2000)?;
     std::fs::copy(root().join("xtask/scenes").join(format!("{HAIR}.xml")), super::scene_file(HAIR))?;
-    for [scene, body, meshed] in BODIES {
+    for [scene, replaced, rough, smooth] in BODIES {
         let text = std::fs::read_to_string(super::scene_file(scene))?;
-        ensure!(text.contains(body), "{scene} has another body");
-        std::fs::write(directory.join(format!("{meshed}.xml")), text.replace(body, BODY))?;
+        ensure!(text.contains(replaced), "{scene} has another body");
+        for (meshed, file) in [(rough, ROUGH), (smooth, SMOOTH)] {
+            std::fs::write(directory.join(format!("{meshed}.xml")), text.replace(replaced, &body(file)))?;
+        }
     }
     Ok(())
 }
@@ -68,8 +87,25 @@ fn write_lock(path: &Path, strands: u32) -> Result<()> {
     Ok(out.flush()?)
 }
 
-/// Writes a ball, unless it is there; returns the number of its triangles.
+/// Bumps of a twentieth of the radius, and on them others as small as the triangles are: as rough as a mesh can be.
+fn bumps(u: f64, v: f64) -> f64 {
+    1.0 + 0.05 * (40.0 * u).sin() * (37.0 * v).sin() + 0.01 * (300.0 * u).sin() * (280.0 * v).sin()
+}
+
+/// Lumps and hollows, as a potato has them.
+fn lumps(u: f64, v: f64) -> f64 {
+    let large = (3.0 * u).sin() * v.sin().powi(3) * (2.0 * v).cos();
+    let small = (9.0 * u + 1.0).sin() * v.sin().powi(9) * (8.0 * v).sin();
+    1.0 + 0.15 * large + 0.04 * small
+}
+
+/// Writes a rough ball, unless it is there; returns the number of its triangles.
 pub(crate) fn write_ball(path: &Path, n: u32) -> Result<u32> {
+    write_uneven_ball(path, n, bumps)
+}
+
+/// Writes a ball with so many meridians whose radius depends on longitude and colatitude [rad].
+fn write_uneven_ball(path: &Path, n: u32, radius: impl Fn(f64, f64) -> f64) -> Result<u32> {
     let rings = n / 2 - 1;
     let triangles = 2 * n * rings;
     if path.exists() {
@@ -85,7 +121,7 @@ pub(crate) fn write_ball(path: &Path, n: u32) -> Result<u32> {
     for (ring, meridian) in (1..=rings).flat_map(|ring| (0..n).map(move |meridian| (ring, meridian))) {
         let (u, v) = (f64::from(meridian) / f64::from(n), f64::from(ring) / f64::from(rings + 1));
         let (u, v) = (2.0 * PI * u, PI * v);
-        let r = 1.0 + 0.05 * (40.0 * u).sin() * (37.0 * v).sin() + 0.01 * (300.0 * u).sin() * (280.0 * v).sin();
+        let r = radius(u, v);
         point([r * v.sin() * u.cos(), r * v.sin() * u.sin(), r * v.cos()])?;
     }
     point([0.0, 0.0, -1.0])?;

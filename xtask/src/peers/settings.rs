@@ -74,6 +74,7 @@ pub(crate) fn duels() -> Vec<Duel> {
         even("f2_grains_direct", Scalar, "integrator=path", 40, 24),
         adaptive("b_marble_cube_matched", Scalar, DEEP, 12, 32),
         adaptive("b4_marble_mesh", Scalar, DEEP, 8, 96),
+        adaptive("b5_marble_smooth_mesh", Scalar, DEEP, 8, 96),
         even("b2_furnace_matched", Scalar, DEEP_IN_GLASS, 24, 32),
         adaptive("b3_grey_matched", Scalar, "integrator=volpath rr_depth=1000000", 12, 32),
         even("a_marble_cube", Scalar, DEEP_IN_GLASS, 8, 6),
@@ -82,5 +83,6 @@ pub(crate) fn duels() -> Vec<Duel> {
         even("a4_marble_cube_frosted_spot", Scalar, DEEP_IN_GLASS, 24, 20),
         adaptive("c_milk_sphere", Scalar, DEEP_IN_GLASS, 2, 24),
         adaptive("c2_milk_mesh", Scalar, DEEP_IN_GLASS, 2, 48),
+        adaptive("c3_milk_smooth_mesh", Scalar, DEEP_IN_GLASS, 2, 48),
     ]
 }

@@ -111,7 +111,6 @@ impl Path {
         tally: &mut Tally,
     ) {
         let (reference, Some(start)) = (vertex.reference(), self.start(vertex.reference().p)) else { return };
-        let Some(Attempt { odds, supposed, .. }) = attempt.closer(scene, start.p) else { return };
         let Some((id, probability)) = scene.lights.choose_bending(&reference, u_choice) else { return };
         let light = scene.lights.get(id);
         if !light.is_worth_bending() {
@@ -125,6 +124,7 @@ impl Path {
         };
         let Some((way, ray, hit)) = scene.bend(&start, &goal, tally) else { return };
         let Bend { dir, onward, cos_theta, spread } = way.bend;
+        let Some(Attempt { odds, supposed, .. }) = attempt.towards(start.p, dir) else { return };
         if !light.shines_towards(&goal, -onward) {
             return;
         }

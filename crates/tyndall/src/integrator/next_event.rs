@@ -121,8 +121,7 @@ impl Path {
         if f.is_zero() || u_worth >= worth {
             return;
         }
-        let nearer = attempt.towards(reference.p, sample.dir).and_then(|attempt| attempt.closer(scene, reference.p));
-        let Some(Attempt { odds, supposed, .. }) = nearer else { return };
+        let Some(Attempt { odds, supposed, .. }) = attempt.towards(reference.p, sample.dir) else { return };
         let (inside, within) = self.inside_towards(scene, vertex, sample.dir);
         let origin = vertex.shadow_origin(sample.dir);
         let mut proxied_within;
@@ -164,7 +163,7 @@ impl Path {
     ) {
         let scene = self.world(scene);
         let Announced { p, dir, mut rng, .. } = *announced;
-        let Some((attempt, weights)) = self.on_walk(scene, announced, &mut rng) else { return };
+        let Some((attempt, weights)) = self.on_walk(announced, &mut rng) else { return };
         let (mut history, Some(medium)) = (self.history, self.inside.id()) else { return };
         history.walked(announced.collisions - 1);
         sink.turned(&mut history, Turn::Medium(medium), announced.collisions - 1);

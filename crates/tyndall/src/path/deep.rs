@@ -9,11 +9,11 @@ use crate::{
     },
     light::Reference,
     math::{Ray, Vec3},
-    medium::Inside,
+    medium::{Inside, MediumId},
     phase::Phase,
     sampling::Rng,
     scene::{Lit, Scene},
-    shape::{Ball, Hit, Hollow, Interaction, Room},
+    shape::{Hit, Hollow, Interaction, ObjectId, Room, Touching},
     spectrum::Lanes,
     tally::Tally,
 };
@@ -35,22 +35,37 @@ pub struct Surroundings {
     left: Left,
 }
 
-/// The surface that a path in a medium came from.
+/// The surface behind a path in a medium: that it came from, or that is near.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Behind {
     /// Where the path left it [length].
     from: Option<Vec3>,
-    /// Its normal, on the side of the path, while balls that touch it are worth to try.
-    inward: Option<Vec3>,
-    /// The radius of the last ball that touched it [length].
-    touched: Option<f32>,
+    /// The side of it that the path is on, until a ball is asked for that touches it there.
+    side: Option<Side>,
+    /// That ball.
+    touching: Option<Touching>,
 }
 
-/// Balls that are tried before the one around the path is taken, each so much smaller than the one before \[1\].
-const TRIES: u32 = 3;
-const SMALLER: f32 = 0.4;
+/// A side of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Side {
+    /// The normal.
+    inward: Vec3,
+    /// The triangle, if that is in the world itself and this the side away from its normal.
+    triangle: Option<(ObjectId, u32)>,
+}
 
 impl Behind {
+    /// A path leaves a surface along `dir`.
+    #[inline]
+    fn leave(hit: &Interaction, dir: Vec3) -> Self {
+        let enters = hit.ng.dot(dir) < 0.0;
+        let is_known = enters && hit.instance == Hit::NO_INSTANCE;
+        let inward = if enters { -hit.ng } else { hit.ng };
+        let side = Side { inward, triangle: is_known.then_some((hit.object, hit.prim)) };
+        Self { from: Some(hit.p), side: Some(side), touching: None }
+    }
+
     /// How far the nearest surface is from `p` at most, for a search to end there: as far as this one [length].
     #[inline]
     fn distance(&self, p: Vec3) -> f32 {
@@ -59,25 +74,31 @@ impl Behind {
         self.from.map_or(f32::INFINITY, |from| (p - from).length() * BEYOND)
     }
 
-    /// The ball around `p`; or a larger one that holds it and touches the surface behind, if that is even enough and the
-    /// nearest. A walk near the surface leaves such a ball far more rarely.
+    /// The ball that touches the surface.
     #[inline]
-    fn touching(&mut self, scene: &Scene, p: Vec3, around: Ball, most: f32) -> Ball {
-        let Some(inward) = self.inward else { return around };
-        let mut radius = self.touched.unwrap_or(most);
-        for _ in 0..TRIES {
-            if radius < 2.0 * around.radius {
-                break;
-            }
-            let ball = scene.ball_near(p + inward * (radius - around.radius), radius);
-            if ball.depth(p) > 0.5 * around.radius {
-                self.touched = Some(radius);
-                return ball;
-            }
-            radius *= SMALLER;
+    fn touching(&mut self, scene: &Scene, medium: MediumId) -> Option<Touching> {
+        if let (Some(Side { inward, triangle }), Some(from)) = (self.side.take(), self.from) {
+            let known = triangle.and_then(|triangle| scene.touching(triangle));
+            self.touching = known.unwrap_or_else(|| scene.touching_at(from.as_dvec3(), inward.as_dvec3(), medium));
         }
-        self.inward = None;
-        around
+        self.touching
+    }
+
+    /// A room that holds `p`, and how far the nearest surface is from there at least [length]: the ball that touches the surface,
+    /// or else one around `p`, or the one that touches what is near.
+    #[inline]
+    fn room(&mut self, scene: &Scene, depths: &Depths, p: Vec3) -> (Room, f32) {
+        if let Some(touching) = self.touching(scene, depths.id).filter(|touching| touching.holds(p)) {
+            return (Room::Ball(touching.ball), touching.ball.depth(p));
+        }
+        let (around, nearest) = scene.ball(p, depths.farthest(scene).min(self.distance(p)));
+        if let Some(touching) = nearest.and_then(|triangle| scene.touching(triangle)) {
+            self.touching = touching;
+        }
+        match self.touching.filter(|touching| touching.is_as_good_as(&around, p)) {
+            Some(Touching { ball, .. }) => (Room::Ball(ball), around.radius.max(ball.depth(p))),
+            None => (Room::Ball(around), around.radius),
+        }
     }
 }
 
@@ -92,10 +113,6 @@ enum Left {
     Collision,
 }
 
-/// How far beyond the clearance that is known a closer look goes [mean free paths]. It must not depend on the number that was drawn:
-/// clearances are bounds, and an answer may be lower if it has been looked for further.
-const CLOSER_LOOK: f32 = 2.0;
-
 /// Whether light is sampled at a vertex, and how likely that was: a number is drawn once, and what more becomes known of the
 /// way to the light can only lower the odds that it is held against.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,8 +125,6 @@ pub struct Attempt {
     draw: f32,
     /// No surface and no light is here.
     room: Room,
-    /// How far another is worth to look for, where this one may be loose [length].
-    closer: f32,
     /// The probability where no medium is between \[1\].
     share: f32,
     /// The least `σ_t` of all lanes [1/length].
@@ -119,7 +134,7 @@ pub struct Attempt {
 impl Attempt {
     /// As at every surface.
     pub const CERTAIN: Self =
-        Self { odds: 1.0, supposed: 1.0, draw: 0.0, room: Room::NONE, closer: 0.0, share: 1.0, sigma_min: 0.0 };
+        Self { odds: 1.0, supposed: 1.0, draw: 0.0, room: Room::NONE, share: 1.0, sigma_min: 0.0 };
     /// As in a medium that no light reaches: what paths run into there counts in full.
     pub const NONE: Self = Self { odds: 0.0, supposed: 0.0, draw: 1.0, ..Self::CERTAIN };
 
@@ -140,23 +155,7 @@ impl Attempt {
     #[inline]
     #[must_use]
     pub fn towards(&self, p: Vec3, dir: Vec3) -> Option<Self> {
-        self.lowered(self.room.reach(p, dir))
-    }
-
-    /// The same with another ball around `p`, where the one that was known may be loose.
-    #[inline]
-    #[must_use]
-    pub fn closer(&self, scene: &Scene, p: Vec3) -> Option<Self> {
-        if self.closer == 0.0 {
-            return Some(*self);
-        }
-        let cap = ((self.share / self.odds).ln() + CLOSER_LOOK) / self.sigma_min;
-        self.lowered(scene.ball(p, cap.min(self.closer)).radius)
-    }
-
-    #[inline]
-    fn lowered(&self, way: f32) -> Option<Self> {
-        let odds = light_odds(self.share, self.sigma_min * way).min(self.odds);
+        let odds = light_odds(self.share, self.sigma_min * self.room.reach(p, dir)).min(self.odds);
         (self.draw <= odds).then_some(Self { odds, ..*self })
     }
 }
@@ -178,8 +177,7 @@ impl Surroundings {
     /// The path leaves a surface along `dir`.
     #[inline]
     pub(crate) fn leave(&mut self, scene: &Scene, hit: &Interaction, dir: Vec3) {
-        let inward = if hit.ng.dot(dir) < 0.0 { -hit.ng } else { hit.ng };
-        self.behind = Behind { from: Some(hit.p), inward: Some(inward), ..self.behind };
+        self.behind = Behind::leave(hit, dir);
         self.hollow = scene.hollow(hit, dir);
     }
 
@@ -226,32 +224,22 @@ impl Path {
         if std::mem::replace(&mut self.around.left, Left::Nothing) == Left::Collision {
             return Attempt { supposed: depths.odds(self.around.room.depth(p)), ..Attempt::NONE };
         }
-        let (room, depth) = if let Some(room) = scene.room(depths.id) {
-            (room, room.depth(p))
-        } else {
-            let most = depths.farthest(scene);
-            let around = scene.ball(p, most.min(self.around.behind.distance(p)));
-            (Room::Ball(self.around.behind.touching(scene, p, around, most)), around.radius)
+        let (room, depth) = match scene.room(depths.id) {
+            Some(room) => (room, room.depth(p)),
+            None => self.around.behind.room(scene, &depths, p),
         };
         self.around.room = room;
         let (odds, draw) = (depths.odds(depth), self.sampler.rng.next_positive());
         Attempt { odds, supposed: odds, draw, ..Attempt::within(&depths, room) }
     }
 
-    /// A light sample that a walk has announced, and what the path weighs there. A ball may be loose: what
-    /// [`Attempt::towards`] and [`Attempt::closer`] say is still to be asked.
+    /// A light sample that a walk has announced, and what the path weighs there. What [`Attempt::towards`] says is still to be asked.
     #[inline]
-    pub(crate) fn on_walk(
-        &self,
-        scene: &Scene,
-        announced: &Announced,
-        rng: &mut Rng,
-    ) -> Option<(Attempt, PathWeights)> {
+    pub(crate) fn on_walk(&self, announced: &Announced, rng: &mut Rng) -> Option<(Attempt, PathWeights)> {
         let depths = self.around.depths?;
         let supposed = announced.odds;
         let draw = rng.next_positive() * supposed;
-        let closer = if scene.room(depths.id).is_some() { 0.0 } else { depths.farthest(scene) };
-        let attempt = Attempt { odds: supposed, supposed, draw, closer, ..Attempt::within(&depths, self.around.room) };
+        let attempt = Attempt { odds: supposed, supposed, draw, ..Attempt::within(&depths, self.around.room) };
         let settled = depths.settle(announced.collisions, announced.length);
         let mut weights = self.weights;
         weights.walk(settled.beta, settled.density);

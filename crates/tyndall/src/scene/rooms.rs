@@ -4,45 +4,68 @@
 
 use std::cell::LazyCell;
 
+use glam::DVec3;
+
 use super::{Object, Scene, overlap};
 use crate::{
     camera::Camera,
     light::{Light, LightTable},
     material::Material,
     math::{Bounds, Vec3},
-    medium::{Body, MediumId},
-    shape::{Ball, Block, Distances, Geometry, Hollow, Hollows, Interaction, ObjectId, Room, Shape},
+    medium::{Body, Homogeneous, MediumId},
+    shape::{
+        Ball, Block, Distances, Geometry, Hollow, Hollows, Interaction, ObjectId, Room, Shape, Touching, TouchingBalls,
+    },
+    spectrum::Wavelengths,
 };
 
 impl Scene {
     /// A lower bound on the distance from `p` to the nearest surface and to the nearest light without a surface, at most
     /// `cap` [length].
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
+        self.nearest(p, cap).0
+    }
+
+    /// The same with the triangle that is nearest, or about as near, if one in the world itself was looked for and found.
+    fn nearest(&self, p: Vec3, cap: f32) -> (f32, Option<(ObjectId, u32)>) {
         let cap = self.clear_of_lights(p, cap);
         let bound = self.facts.distances.as_ref().and_then(|d| d.bound(p, |centre| self.search(centre)));
-        bound.map_or_else(|| self.geometry.clearance(p, cap), |bound| bound.min(cap))
+        bound.map_or_else(|| self.geometry.nearest(p, cap), |bound| (bound.min(cap), None))
     }
 
-    /// A point at `p` or not far from it, with its clearance, for whoever can choose: quickly, where distances are remembered.
+    /// A ball around `p`, as large as its clearance and no larger than `cap` [length], and the triangle that is nearest.
     #[inline]
-    pub fn clearance_near(&self, p: Vec3, cap: f32) -> (Vec3, f32) {
-        match self.facts.distances.as_ref().and_then(|d| d.cell(p, |centre| self.search(centre))) {
-            Some((centre, nearest)) => (centre, self.clear_of_lights(centre, nearest)),
-            None => (p, self.clearance(p, cap)),
-        }
+    pub fn ball(&self, p: Vec3, cap: f32) -> (Ball, Option<(ObjectId, u32)>) {
+        let (clearance, triangle) = self.nearest(p, cap);
+        (Ball::within(p, clearance), triangle)
     }
 
-    /// A ball around `p`, as large as its clearance and no larger than `cap` [length].
+    /// The ball that touches a triangle from behind, where a medium with ends is; `None` where nothing is known of it.
     #[inline]
-    pub fn ball(&self, p: Vec3, cap: f32) -> Ball {
-        Ball::within(p, self.clearance(p, cap))
+    pub fn touching(&self, triangle: (ObjectId, u32)) -> Option<Option<Touching>> {
+        let find = |at, inward| {
+            let medium = self.objects[triangle.0.0 as usize].interface?.inside?;
+            self.touching_at(at, inward, medium)
+        };
+        self.facts.touching.behind(&self.geometry, triangle, find)
     }
 
-    /// The same around a point near `p`, where that saves work.
-    #[inline]
-    pub fn ball_near(&self, p: Vec3, cap: f32) -> Ball {
-        let (centre, clearance) = self.clearance_near(p, cap);
-        Ball::within(centre, clearance)
+    /// The ball in a medium that touches a surface at `at` on the side of its normal `inward`.
+    pub fn touching_at(&self, at: DVec3, inward: DVec3, medium: MediumId) -> Option<Touching> {
+        let widest = self.facts.widest[medium.0 as usize];
+        Touching::widest(at, inward, widest, |centre, away| {
+            let most = self
+                .facts
+                .distances
+                .as_ref()
+                .and_then(|d| d.at_most(centre, |p| self.search(p)))
+                .unwrap_or(f32::INFINITY);
+            if most < away {
+                0.0
+            } else {
+                self.clear_of_lights(centre, self.geometry.clearance_by(centre, away, LEAVES))
+            }
+        })
     }
 
     /// All that a medium fills, if that is one ball or block in which no other surface and no light is.
@@ -110,6 +133,29 @@ pub(super) fn distances(scene: &Scene) -> Option<Distances> {
     let ends = scene.facts.extent.iter().filter(|extent| **extent != Bounds::EVERYTHING);
     let bodies = ends.fold(Bounds::EMPTY, |all, extent| all.union(*extent));
     (scene.geometry.census().surfaces() > FEW_SURFACES).then(|| Distances::over(&bodies)).flatten()
+}
+
+/// Greatest radius of balls that touch a surface [mean free paths]: few walks leave one.
+const WIDEST: f32 = 64.0;
+/// Leaves of the tree that a search for such a ball looks into: of more all are about equally near, and a smaller ball will do.
+const LEAVES: u32 = 64;
+
+/// By medium, at the middle of the wavelengths: the greatest radius of balls that touch its surface [length].
+pub(super) fn widest(scene: &Scene) -> Vec<f32> {
+    let wavelengths = Wavelengths::sample(scene.color, 0.5);
+    let free_path = |medium: &Homogeneous| 1.0 / medium.coefficients(&wavelengths).sigma_t.mean();
+    scene.media.iter().zip(&scene.facts.deepest).map(|(m, deepest)| (WIDEST * free_path(m)).min(*deepest)).collect()
+}
+
+/// A memory of balls that touch the surfaces of media that have ends.
+pub(super) fn touching(scene: &Scene) -> TouchingBalls {
+    let has_ends =
+        |medium: MediumId| scene.facts.extent[medium.0 as usize] != Bounds::EVERYTHING && scene.room(medium).is_none();
+    // Where a scene has faults, shapes may be more than objects.
+    let is_wanted = |id: ObjectId| {
+        scene.objects[id.0 as usize].interface.and_then(|interface| interface.inside).is_some_and(has_ends)
+    };
+    TouchingBalls::of(&scene.geometry, scene.objects.len(), is_wanted)
 }
 
 /// See [`Scene::deepest`].

@@ -10,7 +10,7 @@ use fearless_simd::{Simd, dispatch, f32x8, mask32x8};
 use glam::DVec3;
 
 use super::{
-    Disk, Geometry, Patch, Shape, Sphere,
+    Disk, Geometry, ObjectId, Patch, Shape, Sphere,
     bvh::{
         Bundle, Content, NONE, Node, Packet, Primitive, Tree,
         traverse::{Stack, open},
@@ -22,24 +22,70 @@ use crate::math::Vec3;
 /// Double precision leaves less than this of the magnitudes that go into a distance.
 const SLACK: f64 = 1e-14;
 
+/// What a search has found.
+struct Found {
+    /// A lower bound on the distance to all there is, or how far was to be looked [length].
+    distance: f64,
+    /// The packet that holds the nearest triangle, if that is the nearest of all.
+    packet: Option<usize>,
+}
+
+impl Found {
+    /// Rounded down: a cast may round up.
+    fn within(&self, cap: f32) -> f32 {
+        if self.distance < f64::from(cap) { (self.distance as f32).next_down().max(0.0) } else { cap }
+    }
+
+    /// Something that is no triangle is so near.
+    #[inline(always)]
+    fn lower(&mut self, distance: f64) {
+        if distance < self.distance {
+            *self = Self { distance, packet: None };
+        }
+    }
+}
+
+/// No limit to the leaves that a search looks into.
+const ALL: u32 = u32::MAX;
+
 impl Geometry {
     /// A lower bound on the distance from `p` to the nearest surface [length], at most `cap`.
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
-        let nearest = dispatch!(self.level, simd => self.world_clearance(simd, p, cap, |_| false));
-        // Rounded down: the cast may have rounded up.
-        if nearest < f64::from(cap) { (nearest as f32).next_down().max(0.0) } else { cap }
+        self.clearance_by(p, cap, ALL)
+    }
+
+    /// The same, given up after so many leaves of the tree: then it is 0.
+    pub fn clearance_by(&self, p: Vec3, cap: f32, leaves: u32) -> f32 {
+        dispatch!(self.level, simd => self.world_clearance(simd, p, cap, leaves, |_| false)).within(cap)
+    }
+
+    /// The same with the triangle that is nearest, or about as near, if one in the world itself is.
+    pub fn nearest(&self, p: Vec3, cap: f32) -> (f32, Option<(ObjectId, u32)>) {
+        dispatch!(self.level, simd => {
+            let found = self.world_clearance(simd, p, cap, ALL, |_| false);
+            let id = found.packet.map(|packet| nearest_of(simd, &self.world.packets[packet], p));
+            (found.within(cap), id)
+        })
     }
 
     /// Whether no surface but a sphere that stands in the world can be within `distance` of `p` [length].
     pub(super) fn is_alone(&self, p: Vec3, distance: f32, sphere: (u32, u32)) -> bool {
         let is_itself = |primitive: &Primitive| matches!(*primitive, Primitive::Sphere { object, instance, .. } if (object, instance) == sphere);
-        dispatch!(self.level, simd => self.world_clearance(simd, p, distance, is_itself)) >= f64::from(distance)
+        let found = dispatch!(self.level, simd => self.world_clearance(simd, p, distance, ALL, is_itself));
+        found.distance >= f64::from(distance)
     }
 
     /// Of what stands in the world and is not `ignored`.
     #[inline(always)]
-    fn world_clearance<S: Simd>(&self, simd: S, p: Vec3, cap: f32, ignored: impl Fn(&Primitive) -> bool) -> f64 {
-        search(simd, &self.world, p.as_dvec3(), f64::from(cap), |primitive, cap| match *primitive {
+    fn world_clearance<S: Simd>(
+        &self,
+        simd: S,
+        p: Vec3,
+        cap: f32,
+        leaves: u32,
+        ignored: impl Fn(&Primitive) -> bool,
+    ) -> Found {
+        search(simd, &self.world, p.as_dvec3(), (f64::from(cap), leaves), |primitive, cap| match *primitive {
             _ if ignored(primitive) => f64::INFINITY,
             Primitive::Instance(index) => self.instance_clearance(simd, index, p, cap),
             Primitive::Shape { object, instance } if instance != NONE => {
@@ -59,9 +105,13 @@ impl Geometry {
         let local = placement.local_point(p.as_dvec3());
         let found = simd.vectorize(
             #[inline(always)]
-            || search(simd, tree, local, cap / stretch, |primitive, _| self.primitive_clearance(primitive, local)),
+            || {
+                search(simd, tree, local, (cap / stretch, ALL), |primitive, _| {
+                    self.primitive_clearance(primitive, local)
+                })
+            },
         );
-        found * stretch - placement.slack(local)
+        found.distance * stretch - placement.slack(local)
     }
 
     fn primitive_clearance(&self, primitive: &Primitive, p: DVec3) -> f64 {
@@ -154,15 +204,21 @@ fn to_sphere(centre: Vec3, radius: f32, p: DVec3) -> f64 {
     (distance - radius).abs() - SLACK * (distance + radius)
 }
 
-/// The least distance in `tree`, if it is below `cap`; else `cap`.
+/// The least distance in `tree`, if it is below `cap`, else `cap`; 0 where that is not known after so many leaves.
 #[inline(always)]
-fn search<S: Simd>(simd: S, tree: &Tree, p: DVec3, cap: f64, mut visit: impl FnMut(&Primitive, f64) -> f64) -> f64 {
-    let mut nearest = cap;
-    let Some(mut child) = tree.root else { return nearest };
+fn search<S: Simd>(
+    simd: S,
+    tree: &Tree,
+    p: DVec3,
+    (cap, mut leaves): (f64, u32),
+    mut visit: impl FnMut(&Primitive, f64) -> f64,
+) -> Found {
+    let mut found = Found { distance: cap, packet: None };
+    let Some(mut child) = tree.root else { return found };
     let point = p.as_vec3();
     let mut stack = Stack::new();
     loop {
-        let limit = ((nearest * nearest) as f32).next_up();
+        let limit = ((found.distance * found.distance) as f32).next_up();
         match child.content() {
             Content::Node(index) => {
                 let node = &tree.nodes[index];
@@ -173,27 +229,31 @@ fn search<S: Simd>(simd: S, tree: &Tree, p: DVec3, cap: f64, mut visit: impl FnM
                 }
             }
             Content::Packets { first, count } => {
-                for packet in &tree.packets[first..first + count] {
-                    nearest = nearest.min(to_packet(simd, packet, p, limit));
+                for packet in first..first + count {
+                    let distance = to_packet(simd, &tree.packets[packet], p, limit);
+                    if distance < found.distance {
+                        found = Found { distance, packet: Some(packet) };
+                    }
                 }
             }
             Content::Bundles { first, count } => {
                 for bundle in &tree.bundles[first..first + count] {
-                    nearest = nearest.min(to_bundle(simd, bundle, point));
+                    found.lower(to_bundle(simd, bundle, point));
                 }
             }
             Content::Others { first, count } => {
                 for primitive in &tree.others[first..first + count] {
-                    nearest = nearest.min(visit(primitive, nearest));
+                    found.lower(visit(primitive, found.distance));
                 }
             }
         }
-        if nearest <= 0.0 {
-            return 0.0;
+        leaves = leaves.saturating_sub(1);
+        if found.distance <= 0.0 || leaves == 0 {
+            return Found { distance: 0.0, packet: found.packet };
         }
-        match stack.pop(((nearest * nearest) as f32).next_up()) {
+        match stack.pop(((found.distance * found.distance) as f32).next_up()) {
             Some(next) => child = next,
-            None => return nearest,
+            None => return found,
         }
     }
 }
@@ -248,6 +308,15 @@ fn to_packet<S: Simd>(simd: S, packet: &Packet, p: DVec3, limit: f32) -> f64 {
         nearest = nearest.min(to_triangle_squared(triangle, p).sqrt() - slack);
     }
     nearest
+}
+
+/// The triangle of a packet that is nearest, by single precision.
+#[inline(always)]
+fn nearest_of<S: Simd>(simd: S, packet: &Packet, p: Vec3) -> (ObjectId, u32) {
+    let distances: [f32; 8] = to_triangles(simd, packet, p).0.into();
+    let lane = (1..8).fold(0, |best, lane| if distances[lane] < distances[best] { lane } else { best });
+    let id = packet.ids[lane];
+    (ObjectId(id.object), id.prim)
 }
 
 #[inline(always)]

@@ -49,10 +49,18 @@ impl Distances {
         (bound > self.side).then_some(bound)
     }
 
+    /// What the distance from `p` to the nearest surface can be at most, but where distances are bounds \[length\]; `None` outside
+    /// of the grid.
+    #[inline]
+    pub fn at_most(&self, p: Vec3, search: impl FnOnce(Vec3) -> f32) -> Option<f32> {
+        let (centre, nearest) = self.cell(p, search)?;
+        Some(nearest + (p - centre).length())
+    }
+
     /// The centre of the cell that `p` is in, and the distance from there to the nearest surface [length]; `None` outside of
     /// the grid.
     #[inline]
-    pub fn cell(&self, p: Vec3, search: impl FnOnce(Vec3) -> f32) -> Option<(Vec3, f32)> {
+    fn cell(&self, p: Vec3, search: impl FnOnce(Vec3) -> f32) -> Option<(Vec3, f32)> {
         let place = (p - self.min) / self.side;
         let [x, y, z] = place.to_array();
         let [nx, ny, nz] = self.counts;

@@ -31,6 +31,7 @@ mod patch;
 mod room;
 mod seams;
 mod sphere;
+mod touching;
 mod uv;
 
 pub use builder::{GeometryBuilder, GroupId, ShapeError};
@@ -50,4 +51,5 @@ pub use patch::Patch;
 pub use room::{Ball, Block, Room};
 pub use seams::Seams;
 pub use sphere::Sphere;
+pub use touching::{Touching, TouchingBalls};
 pub use uv::Uv;

@@ -179,6 +179,28 @@ impl World {
 
     /// A ball of `n` by `2n` quadrilaterals with the normals of a sphere.
     pub(crate) fn faceted_ball(&mut self, radius: f32, n: u32, material: Material, inside: Homogeneous) {
+        self.add_ball(|_| radius, n, true, material, inside);
+    }
+
+    /// The same of another radius in each direction, and without normals.
+    pub(crate) fn uneven_ball(
+        &mut self,
+        radius: impl Fn(Vec3) -> f32,
+        n: u32,
+        material: Material,
+        inside: Homogeneous,
+    ) {
+        self.add_ball(radius, n, false, material, inside);
+    }
+
+    fn add_ball(
+        &mut self,
+        radius: impl Fn(Vec3) -> f32,
+        n: u32,
+        is_smooth: bool,
+        material: Material,
+        inside: Homogeneous,
+    ) {
         let interface = self.filled(Some(inside));
         self.object(material, interface);
         let m = 2 * n;
@@ -200,7 +222,8 @@ impl World {
             .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]])
             .filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
             .collect();
-        let positions = normals.iter().map(|d| *d * radius).collect();
+        let positions = normals.iter().map(|d| *d * radius(*d)).collect();
+        let normals = if is_smooth { normals } else { Vec::new() };
         let mesh = Mesh { positions, indices, normals, uvs: Vec::new(), reversed: false };
         self.builder.add_mesh(mesh, &Transform::IDENTITY, false).unwrap();
     }

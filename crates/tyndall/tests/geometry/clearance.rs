@@ -2,7 +2,7 @@
 
 use parry3d::query::PointQuery;
 use tyndall::math::{Transform, Vec3};
-use tyndall::shape::{Disk, GeometryBuilder, Sphere};
+use tyndall::shape::{Disk, GeometryBuilder, Mesh, ObjectId, Sphere};
 
 use super::{
     affine,
@@ -79,6 +79,29 @@ fn no_surface_is_met_within_the_clearance() {
             }
         }
     }
+}
+
+/// By the distance of every triangle by itself. A search that is given up knows nothing.
+#[test]
+fn the_nearest_triangle_is_as_near_as_the_surface() {
+    let random = &mut Random(35);
+    let mesh = displaced_sphere(12, 0.3);
+    let each: Vec<_> = mesh.indices.iter().map(|&t| of_mesh(Mesh { indices: vec![t], ..mesh.clone() })).collect();
+    let geometry = of_mesh(mesh);
+    let mut given_up = 0;
+    for _ in 0..300 {
+        let p = random.in_ball() * 1.5;
+        let (clearance, triangle) = geometry.nearest(p, f32::INFINITY);
+        let (object, prim) = triangle.unwrap();
+        assert_eq!((clearance, object), (geometry.clearance(p, f32::INFINITY), ObjectId(0)));
+        let distance = each[prim as usize].clearance(p, f32::INFINITY);
+        assert!(distance >= clearance && distance < clearance + 1e-5, "{p}: {distance} {clearance}");
+        assert_eq!(geometry.nearest(p, 0.5 * clearance), (0.5 * clearance, None));
+        let by = geometry.clearance_by(p, f32::INFINITY, 8);
+        assert!(by == clearance || by == 0.0, "{by} {clearance}");
+        given_up += u32::from(by == 0.0);
+    }
+    assert!((50..250).contains(&given_up), "{given_up}");
 }
 
 /// A uniform scale of 3 multiplies distances by 3; a squeeze by (3, 1, 1) leaves a bound that is at least a third.
