@@ -112,6 +112,8 @@ struct Facts {
     holds_lamp: Vec<bool>,
     /// Where lights are that are no surfaces; one box for all if they are many.
     bare_lights: Vec<Bounds>,
+    /// Whether a search for the nearest surface is quick.
+    has_few_surfaces: bool,
     /// Distances deep inside media, where a search for them is slow.
     distances: Option<Distances>,
     /// Balls that touch the triangles around media from inside.
@@ -202,6 +204,7 @@ impl Scene {
             deepest: extent.iter().map(|extent| rooms::deepest(extent, geometry)).collect(),
             extent,
             bare_lights: rooms::bare_lights(lights),
+            has_few_surfaces: rooms::has_few_surfaces(geometry),
             bodies,
             ..Facts::default()
         };

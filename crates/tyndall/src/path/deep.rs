@@ -79,7 +79,7 @@ impl Behind {
     fn touching(&mut self, scene: &Scene, medium: MediumId) -> Option<Touching> {
         if let (Some(Side { inward, triangle }), Some(from)) = (self.side.take(), self.from) {
             let known = triangle.and_then(|triangle| scene.touching(triangle));
-            self.touching = known.unwrap_or_else(|| scene.touching_at(from.as_dvec3(), inward.as_dvec3(), medium));
+            self.touching = known.unwrap_or_else(|| scene.touching_at(from, inward, medium));
         }
         self.touching
     }

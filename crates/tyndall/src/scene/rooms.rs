@@ -40,31 +40,29 @@ impl Scene {
         (Ball::within(p, clearance), triangle)
     }
 
-    /// The ball that touches a triangle from behind, where a medium with ends is; `None` where nothing is known of it.
+    /// The ball that touches a triangle from behind, where a medium with ends is; `None` where none is remembered.
     #[inline]
     pub fn touching(&self, triangle: (ObjectId, u32)) -> Option<Option<Touching>> {
         let find = |at, inward| {
             let medium = self.objects[triangle.0.0 as usize].interface?.inside?;
-            self.touching_at(at, inward, medium)
+            self.find_touching(at, inward, medium)
         };
         self.facts.touching.behind(&self.geometry, triangle, find)
     }
 
-    /// The ball in a medium that touches a surface at `at` on the side of its normal `inward`.
-    pub fn touching_at(&self, at: DVec3, inward: DVec3, medium: MediumId) -> Option<Touching> {
+    /// The ball in a medium that touches a surface at `at` on the side of its normal `inward`, if that is quickly found.
+    pub fn touching_at(&self, at: Vec3, inward: Vec3, medium: MediumId) -> Option<Touching> {
+        let is_quick = self.facts.has_few_surfaces;
+        is_quick.then(|| self.find_touching(at.as_dvec3(), inward.as_dvec3(), medium)).flatten()
+    }
+
+    fn find_touching(&self, at: DVec3, inward: DVec3, medium: MediumId) -> Option<Touching> {
         let widest = self.facts.widest[medium.0 as usize];
-        Touching::widest(at, inward, widest, |centre, away| {
-            let most = self
-                .facts
-                .distances
-                .as_ref()
-                .and_then(|d| d.at_most(centre, |p| self.search(p)))
-                .unwrap_or(f32::INFINITY);
-            if most < away {
-                0.0
-            } else {
-                self.clear_of_lights(centre, self.geometry.clearance_by(centre, away, LEAVES))
-            }
+        Touching::widest(at, inward, widest, |ball| {
+            let most = self.facts.distances.as_ref().and_then(|d| d.at_most(ball.centre, |p| self.search(p)));
+            most.is_none_or(|most| most >= ball.radius)
+                && self.clear_of_lights(ball.centre, ball.radius) >= ball.radius
+                && self.geometry.is_free(ball.centre, ball.radius, LEAVES)
         })
     }
 
@@ -97,8 +95,12 @@ impl Scene {
     }
 }
 
-/// Of so many surfaces the nearest is found quickly.
-const FEW_SURFACES: usize = 1000;
+/// Whether the nearest surface is found quickly.
+pub(super) fn has_few_surfaces(geometry: &Geometry) -> bool {
+    const FEW: usize = 1000;
+    geometry.census().surfaces() <= FEW
+}
+
 /// All of space, unless every surface that knows the medium has it inside, is closed with its normals outwards, and stands
 /// in the world itself.
 pub(super) fn extent(
@@ -132,11 +134,11 @@ pub(super) fn extent(
 pub(super) fn distances(scene: &Scene) -> Option<Distances> {
     let ends = scene.facts.extent.iter().filter(|extent| **extent != Bounds::EVERYTHING);
     let bodies = ends.fold(Bounds::EMPTY, |all, extent| all.union(*extent));
-    (scene.geometry.census().surfaces() > FEW_SURFACES).then(|| Distances::over(&bodies)).flatten()
+    (!scene.facts.has_few_surfaces).then(|| Distances::over(&bodies)).flatten()
 }
 
 /// Greatest radius of balls that touch a surface [mean free paths]: few walks leave one.
-const WIDEST: f32 = 64.0;
+const WIDEST: f32 = 256.0;
 /// Leaves of the tree that a search for such a ball looks into: of more all are about equally near, and a smaller ball will do.
 const LEAVES: u32 = 64;
 

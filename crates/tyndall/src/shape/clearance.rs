@@ -22,12 +22,29 @@ use crate::math::Vec3;
 /// Double precision leaves less than this of the magnitudes that go into a distance.
 const SLACK: f64 = 1e-14;
 
+/// How far a search goes.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Nothing beyond is looked for [length].
+    cap: f64,
+    /// Once something is so near nothing nearer is looked for [length].
+    enough: f64,
+    /// Leaves that are looked into.
+    leaves: u32,
+}
+
 /// What a search has found.
 struct Found {
     /// A lower bound on the distance to all there is, or how far was to be looked [length].
     distance: f64,
     /// The packet that holds the nearest triangle, if that is the nearest of all.
     packet: Option<usize>,
+}
+
+impl Limits {
+    fn cap(cap: f64) -> Self {
+        Self { cap, enough: 0.0, leaves: u32::MAX }
+    }
 }
 
 impl Found {
@@ -45,34 +62,33 @@ impl Found {
     }
 }
 
-/// No limit to the leaves that a search looks into.
-const ALL: u32 = u32::MAX;
-
 impl Geometry {
     /// A lower bound on the distance from `p` to the nearest surface [length], at most `cap`.
     pub fn clearance(&self, p: Vec3, cap: f32) -> f32 {
-        self.clearance_by(p, cap, ALL)
-    }
-
-    /// The same, given up after so many leaves of the tree: then it is 0.
-    pub fn clearance_by(&self, p: Vec3, cap: f32, leaves: u32) -> f32 {
-        dispatch!(self.level, simd => self.world_clearance(simd, p, cap, leaves, |_| false)).within(cap)
+        dispatch!(self.level, simd => self.world_clearance(simd, p, Limits::cap(f64::from(cap)), |_| false)).within(cap)
     }
 
     /// The same with the triangle that is nearest, or about as near, if one in the world itself is.
     pub fn nearest(&self, p: Vec3, cap: f32) -> (f32, Option<(ObjectId, u32)>) {
         dispatch!(self.level, simd => {
-            let found = self.world_clearance(simd, p, cap, ALL, |_| false);
+            let found = self.world_clearance(simd, p, Limits::cap(f64::from(cap)), |_| false);
             let id = found.packet.map(|packet| nearest_of(simd, &self.world.packets[packet], p));
             (found.within(cap), id)
         })
     }
 
+    /// Whether no surface is within `distance` of `p` [length], where so many leaves of the tree can tell; else false.
+    pub fn is_free(&self, p: Vec3, distance: f32, leaves: u32) -> bool {
+        let cap = f64::from(distance);
+        let limits = Limits { cap, enough: cap.next_down(), leaves };
+        dispatch!(self.level, simd => self.world_clearance(simd, p, limits, |_| false)).distance >= cap
+    }
+
     /// Whether no surface but a sphere that stands in the world can be within `distance` of `p` [length].
     pub(super) fn is_alone(&self, p: Vec3, distance: f32, sphere: (u32, u32)) -> bool {
         let is_itself = |primitive: &Primitive| matches!(*primitive, Primitive::Sphere { object, instance, .. } if (object, instance) == sphere);
-        let found = dispatch!(self.level, simd => self.world_clearance(simd, p, distance, ALL, is_itself));
-        found.distance >= f64::from(distance)
+        let limits = Limits::cap(f64::from(distance));
+        dispatch!(self.level, simd => self.world_clearance(simd, p, limits, is_itself)).distance >= limits.cap
     }
 
     /// Of what stands in the world and is not `ignored`.
@@ -81,11 +97,10 @@ impl Geometry {
         &self,
         simd: S,
         p: Vec3,
-        cap: f32,
-        leaves: u32,
+        limits: Limits,
         ignored: impl Fn(&Primitive) -> bool,
     ) -> Found {
-        search(simd, &self.world, p.as_dvec3(), (f64::from(cap), leaves), |primitive, cap| match *primitive {
+        search(simd, &self.world, p.as_dvec3(), limits, |primitive, cap| match *primitive {
             _ if ignored(primitive) => f64::INFINITY,
             Primitive::Instance(index) => self.instance_clearance(simd, index, p, cap),
             Primitive::Shape { object, instance } if instance != NONE => {
@@ -106,7 +121,7 @@ impl Geometry {
         let found = simd.vectorize(
             #[inline(always)]
             || {
-                search(simd, tree, local, (cap / stretch, ALL), |primitive, _| {
+                search(simd, tree, local, Limits::cap(cap / stretch), |primitive, _| {
                     self.primitive_clearance(primitive, local)
                 })
             },
@@ -204,16 +219,17 @@ fn to_sphere(centre: Vec3, radius: f32, p: DVec3) -> f64 {
     (distance - radius).abs() - SLACK * (distance + radius)
 }
 
-/// The least distance in `tree`, if it is below `cap`, else `cap`; 0 where that is not known after so many leaves.
+/// The least distance in `tree`, within limits; 0 where there are more leaves than allowed.
 #[inline(always)]
 fn search<S: Simd>(
     simd: S,
     tree: &Tree,
     p: DVec3,
-    (cap, mut leaves): (f64, u32),
+    limits: Limits,
     mut visit: impl FnMut(&Primitive, f64) -> f64,
 ) -> Found {
-    let mut found = Found { distance: cap, packet: None };
+    let mut found = Found { distance: limits.cap, packet: None };
+    let mut leaves = limits.leaves;
     let Some(mut child) = tree.root else { return found };
     let point = p.as_vec3();
     let mut stack = Stack::new();
@@ -248,8 +264,11 @@ fn search<S: Simd>(
             }
         }
         leaves = leaves.saturating_sub(1);
-        if found.distance <= 0.0 || leaves == 0 {
-            return Found { distance: 0.0, packet: found.packet };
+        if found.distance <= limits.enough {
+            return Found { distance: found.distance.max(0.0), ..found };
+        }
+        if leaves == 0 {
+            return Found { distance: 0.0, packet: None };
         }
         match stack.pop(((found.distance * found.distance) as f32).next_up()) {
             Some(next) => child = next,

@@ -9,7 +9,7 @@
 //!
 //! Source: Amenta, Choi and Kolluri 2001, "The power crust, unions of balls, and the medial axis transform", § 2.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::DVec3;
 
@@ -29,20 +29,24 @@ pub struct Touching {
 
 impl Touching {
     /// Sizes that are tried, each half of the one before.
-    const SIZES: usize = 5;
-    /// How far from the surface a ball may be and touch it, in its radii \[1\]: what rounding and small bends add up to.
-    const GAP: f32 = 1e-3;
+    const SIZES: i32 = 7;
+    /// How far from the surface a ball ends, in its radii \[1\]: more than rounding and small bends add up to.
+    const GAP: f32 = 3e-4;
     /// What of the way to the surface must be left in the ball, for it to be as good as the largest around a point \[1\].
     const ENOUGH: f32 = 0.5;
 
-    /// The largest of a few balls that touches a surface at `at` on the side of its normal `inward`, no wider than `widest`
-    /// [length]; `clearance` is given centres and how far to look at most.
-    pub fn widest(at: DVec3, inward: DVec3, widest: f32, clearance: impl Fn(Vec3, f32) -> f32) -> Option<Self> {
-        let sizes = (0..Self::SIZES as i32).map(|halvings| widest * 0.5f32.powi(halvings));
-        sizes.map(|away| (away, clearance(centre(at, inward, away), away))).find_map(|(away, clear)| {
-            let ball = Ball::within(centre(at, inward, away), clear);
-            (ball.radius >= away * (1.0 - Self::GAP)).then_some(Self { ball, inward: inward.as_vec3(), away })
-        })
+    /// With its centre so far from a surface at `at`, on the side of its normal `inward` [length].
+    #[inline]
+    fn new(at: DVec3, inward: DVec3, away: f32) -> Self {
+        let ball = Ball::within((at + inward * f64::from(away)).as_vec3(), away * (1.0 - Self::GAP));
+        Self { ball, inward: inward.as_vec3(), away }
+    }
+
+    /// The largest of a few that touches a surface at `at` on the side of its normal `inward` and is free, no wider than `widest`
+    /// [length].
+    pub fn widest(at: DVec3, inward: DVec3, widest: f32, is_free: impl Fn(&Ball) -> bool) -> Option<Self> {
+        let sizes = (0..Self::SIZES).map(|halvings| widest * 0.5f32.powi(halvings));
+        sizes.map(|away| Self::new(at, inward, away)).find(|touching| is_free(&touching.ball))
     }
 
     /// Whether `p` is in the ball, with about as much room around it as the surface leaves where that is flat.
@@ -59,32 +63,27 @@ impl Touching {
     }
 }
 
-fn centre(at: DVec3, inward: DVec3, away: f32) -> Vec3 {
-    (at + inward * f64::from(away)).as_vec3()
-}
-
-/// Stands for a ball that nobody has asked for.
-const UNKNOWN: u64 = u64::MAX;
+/// Stands for a ball that nobody has asked for: the bits of no length.
+const UNKNOWN: u32 = u32::MAX;
 /// Stands for no ball.
-const NONE: u64 = 0;
+const NONE: u32 = 0;
 
 /// The balls that touch triangles from behind, on the side away from their normals.
 #[derive(Debug, Default)]
 pub struct TouchingBalls {
-    /// By object, by triangle: the bits of [`Touching::away`], and of the radius.
-    balls: Vec<Vec<AtomicU64>>,
+    /// By object, by triangle: the bits of [`Touching::away`].
+    balls: Vec<Vec<AtomicU32>>,
 }
 
 impl TouchingBalls {
-    /// Of the meshes among the objects of some kind.
+    /// Of the meshes among so many objects that are of some kind.
     pub fn of(geometry: &Geometry, objects: usize, is_wanted: impl Fn(ObjectId) -> bool) -> Self {
         let triangles = |id| match geometry.shape(id) {
             Shape::Mesh(mesh) if is_wanted(id) => mesh.indices.len(),
             _ => 0,
         };
-        let objects = (0..objects as u32).map(ObjectId);
-        let unknown = |count| (0..count).map(|_| AtomicU64::new(UNKNOWN)).collect();
-        Self { balls: objects.map(|id| unknown(triangles(id))).collect() }
+        let unknown = |count| (0..count).map(|_| AtomicU32::new(UNKNOWN)).collect();
+        Self { balls: (0..objects as u32).map(|id| unknown(triangles(ObjectId(id)))).collect() }
     }
 
     /// The ball that touches a triangle in its middle, given how to `find` it from there and the direction inwards; `None` where
@@ -102,21 +101,13 @@ impl TouchingBalls {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let (at, inward) = ((a + b + c) / 3.0, if mesh.reversed { normal } else { -normal });
         Some(match ball.load(Ordering::Relaxed) {
+            NONE => None,
             UNKNOWN => {
                 let found = find(at, inward);
-                ball.store(found.map_or(NONE, |found| bits(&found)), Ordering::Relaxed);
+                ball.store(found.map_or(NONE, |found| found.away.to_bits()), Ordering::Relaxed);
                 found
             }
-            NONE => None,
-            known => {
-                let (away, radius) = (f32::from_bits((known >> 32) as u32), f32::from_bits(known as u32));
-                let ball = Ball { centre: centre(at, inward, away), radius };
-                Some(Touching { ball, inward: inward.as_vec3(), away })
-            }
+            away => Some(Touching::new(at, inward, f32::from_bits(away))),
         })
     }
-}
-
-fn bits(touching: &Touching) -> u64 {
-    u64::from(touching.away.to_bits()) << 32 | u64::from(touching.ball.radius.to_bits())
 }

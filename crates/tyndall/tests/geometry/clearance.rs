@@ -97,9 +97,10 @@ fn the_nearest_triangle_is_as_near_as_the_surface() {
         let distance = each[prim as usize].clearance(p, f32::INFINITY);
         assert!(distance >= clearance && distance < clearance + 1e-5, "{p}: {distance} {clearance}");
         assert_eq!(geometry.nearest(p, 0.5 * clearance), (0.5 * clearance, None));
-        let by = geometry.clearance_by(p, f32::INFINITY, 8);
-        assert!(by == clearance || by == 0.0, "{by} {clearance}");
-        given_up += u32::from(by == 0.0);
+        assert!(!geometry.is_free(p, 1.001 * clearance, u32::MAX));
+        let is_free = |leaves| geometry.is_free(p, 0.999 * clearance, leaves);
+        assert!(is_free(u32::MAX));
+        given_up += u32::from(!is_free(3));
     }
     assert!((50..250).contains(&given_up), "{given_up}");
 }
