@@ -52,8 +52,10 @@ impl Scene {
 
     /// The ball in a medium that touches a surface at `at` on the side of its normal `inward`, if that is quickly found.
     pub fn touching_at(&self, at: Vec3, inward: Vec3, medium: MediumId) -> Option<Touching> {
-        let is_quick = self.facts.has_few_surfaces;
-        is_quick.then(|| self.find_touching(at.as_dvec3(), inward.as_dvec3(), medium)).flatten()
+        if !self.facts.has_few_surfaces {
+            return None;
+        }
+        self.find_touching(at.as_dvec3(), inward.as_dvec3(), medium)
     }
 
     fn find_touching(&self, at: DVec3, inward: DVec3, medium: MediumId) -> Option<Touching> {

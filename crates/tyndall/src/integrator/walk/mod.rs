@@ -1,8 +1,9 @@
 //! Walks deep inside a medium: many collisions without a ray.
 //!
 //! A path knows a *room* around it that no surface cuts and that holds no light ([`Room`]): all of a body that is a ball or a block
-//! ([`Scene::room`]), or else a ball around it, from [`Scene::clearance`]. While its flights end inside, nothing can be in their way,
-//! and a collision costs a logarithm, a rotation and four random numbers.
+//! ([`Scene::room`]), or else a ball: one that touches the surface near it ([`Scene::touching`]), or one around it, from
+//! [`Scene::clearance`]. While its flights end inside, nothing can be in their way, and a collision costs a logarithm, a rotation and
+//! four random numbers.
 //!
 //! **Light.** From a point with so much room, `c`, around it no lane has more than `exp(−σ_t c)` of transmittance to any light. There
 //! light is sampled with probability
