@@ -228,7 +228,7 @@ fn bumpy(color: ColorMode, phase: &Phase, boundary: Material) -> World {
     world
 }
 
-/// In it a ball touches nearly every triangle, within a thousandth of its radius: no surface and no lamp is in the ball, and in one
+/// In it a ball touches nearly every triangle, within 3e-4 of its radius and rounding: no surface and no lamp is in the ball, and in one
 /// twice as large there would be, or it is as large as any.
 #[test]
 fn balls_that_touch_a_surface_have_nothing_in_them() {
@@ -247,9 +247,7 @@ fn balls_that_touch_a_surface_have_nothing_in_them() {
         let [a, b, c] = mesh.triangle(prim);
         let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a).normalize());
         assert!(scene.geometry.clearance(centre, f32::INFINITY) >= radius && centre.distance(lamp) >= radius);
-        assert!(
-            (middle.distance(centre) / radius - 1.0).abs() < 1.1e-3 && normal.dot(middle - centre) > 0.999 * radius
-        );
+        assert!((middle.distance(centre) / radius - 1.0).abs() < 4e-4 && normal.dot(middle - centre) >= radius);
         // A point at the surface has room enough, one outside or on the far side has not.
         assert!(touching.holds(middle - normal * 0.2 * radius) && !touching.holds(middle + normal * 0.1 * radius));
         assert!(!touching.holds(centre - normal * 0.95 * radius));

@@ -99,12 +99,13 @@ fn lumps(u: f64, v: f64) -> f64 {
     1.0 + 0.15 * large + 0.04 * small
 }
 
-/// Writes a rough ball, unless it is there; returns the number of its triangles.
+/// Writes a rough ball.
 pub(crate) fn write_ball(path: &Path, n: u32) -> Result<u32> {
     write_uneven_ball(path, n, bumps)
 }
 
-/// Writes a ball with so many meridians whose radius depends on longitude and colatitude [rad].
+/// Writes a ball with so many meridians whose radius depends on longitude and colatitude [rad], unless it is there; returns the
+/// number of its triangles.
 fn write_uneven_ball(path: &Path, n: u32, radius: impl Fn(f64, f64) -> f64) -> Result<u32> {
     let rings = n / 2 - 1;
     let triangles = 2 * n * rings;

@@ -155,7 +155,6 @@ pub(super) fn widest(scene: &Scene) -> Vec<f32> {
 pub(super) fn touching(scene: &Scene) -> TouchingBalls {
     let has_ends =
         |medium: MediumId| scene.facts.extent[medium.0 as usize] != Bounds::EVERYTHING && scene.room(medium).is_none();
-    // Where a scene has faults, shapes may be more than objects.
     let is_wanted = |id: ObjectId| {
         scene.objects[id.0 as usize].interface.and_then(|interface| interface.inside).is_some_and(has_ends)
     };
